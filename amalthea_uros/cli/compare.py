@@ -125,7 +125,8 @@ def compare(
 
     TRACE is what `amuros measure` reads; several traces count as one measurement. Deviations are shares of the measurement. A measured
     value beyond a bound of the analysis refutes the model, whatever the tolerance. Limits are judged by the measured values. The exit
-    code is 1 if a prediction is outside of the tolerance or refuted, if a limit is missed, or if nothing was compared.
+    code is 1 if a prediction is outside of the tolerance or refuted, if a limit is missed, if nothing was compared, or if a part of the
+    measurement is damaged.
     """
     outputs = checked_outputs(outputs, [("--picture", picture)])
     options = CompareOptions(

@@ -4,22 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from amalthea_uros.compare.naming import Target
-from amalthea_uros.compare.results import (
-    Agreement,
-    Comparison,
-)
+from amalthea_uros.compare.results import Agreement, Comparison
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import unstated_phases
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, time_text
-
-if TYPE_CHECKING:
-    pass
 
 
 def open_phases(system: System, settings: Settings) -> tuple[str, ...]:

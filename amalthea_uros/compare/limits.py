@@ -67,7 +67,8 @@ def _with_doubt(limit: MeasuredLimit, rule: Rule) -> MeasuredLimit:
     is_near = limit.is_time and limit.margin is not None and limit.margin < rule.uncertainty
     if limit.verdict is not ObservedVerdict.OK or not is_near:
         return limit
-    return replace(limit, reason="the distance from the limit is within the uncertainty of the measurement")
+    doubt = "the distance from the limit is within the uncertainty of the measurement"
+    return replace(limit, reason="; ".join(filter(None, (limit.reason, doubt))))
 
 
 def _deadlines(context: TimingContext) -> Iterator[SystemLimit]:
@@ -91,7 +92,7 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     period = nominal_period(limit, system) if is_from_period(limit) else None
     if is_from_period(limit) and period is None:
         return MeasuredLimit.of(limit, not_observed(f"{limit.object!r} has no nominal period"), samples)
-    return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples)
+    return _with_losses(MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples), series)
 
 
 def _with_losses(limit: MeasuredLimit, series: Series) -> MeasuredLimit:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.changes.apply import Difference
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
@@ -263,9 +263,14 @@ class Comparison(Shown):
         return self.count(Agreement.WITHIN) > 0 and not self.count(Agreement.OUTSIDE) and not self.count(Agreement.REFUTED)
 
     @property
+    def is_damaged(self) -> bool:
+        """Whether a part of the measurement could not be used, which perhaps contradicts the model."""
+        return any(finding.severity is Severity.ERROR for finding in self.measurement.findings)
+
+    @property
     def is_failed(self) -> bool:
-        """Whether the model does not hold, nothing agrees, or a limit was measured as missed."""
-        return not self.holds or bool(self.missed)
+        """Whether the model does not hold, nothing agrees, a limit was measured as missed, or the measurement is damaged."""
+        return not self.holds or bool(self.missed) or self.is_damaged
 
     @property
     def not_compared(self) -> tuple[ComparisonRow, ...]:

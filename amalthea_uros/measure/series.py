@@ -215,9 +215,9 @@ class Measurement(Shown):
 
     source: str
     format: str
-    digest: str
+    digest: str = ""
     duration: Time
-    resolution: Time | None
+    resolution: Time | None = None
     series: tuple[Series, ...]
     findings: tuple[Finding, ...] = ()
 

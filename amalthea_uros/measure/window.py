@@ -32,6 +32,22 @@ class MeasurementWindow:
         """Whether it is the whole trace."""
         return self.start == 0 and self.end is None
 
+    def contains(self, time: Time) -> bool:
+        """Whether a time is in it, as `holds` says it of many."""
+        return self.is_all or (self.start <= time and (self.end is None or time < self.end))
+
+    def refuse_part(self, name: str) -> None:
+        """Refuse to measure a part of a file that does not say when its values were complete.
+
+        Raises
+        ------
+        InvalidArgumentError : it is not all.
+        """
+        if not self.is_all:
+            raise InvalidArgumentError(
+                f"{name!r} does not say when its values were measured, so no part of it can be; omit --from, --to and --skip"
+            )
+
     def holds(self, times: Numbers) -> Flags:
         """Which times are in it; before the first event, after a step back of the clock, none is unless all are."""
         import numpy as np

@@ -133,6 +133,17 @@ def test_what_was_lost_is_a_share_and_a_doubt_about_limits(app, tmp_path):
     assert (loss.values, loss.lost, loss.share, loss.simulated) == (3, 1, Fraction(1, 4), 0)
     (limit,) = [each for each in found.limits if each.object == "round-trip"]
     assert (limit.verdict, limit.reason) == ("observed_ok", "1 value lost, which may be later")
+    assert (found.is_failed, "25 % of the values of round-trip lost" in str(found)) == (False, True)
+    near = compare(app, times(tmp_path, 4, 19, text="nan\n"), by=["analysis"], uncertainty=2 * MILLISECOND)
+    (limit,) = [each for each in near.limits if each.object == "round-trip"]
+    assert ("1 value lost" in limit.reason, "within the uncertainty" in limit.reason) == (True, True)
+
+
+@pytest.mark.parametrize("text", ["fast\n", "-4\n", '"5\n'])
+def test_a_measurement_of_which_a_part_cannot_be_used_fails(app, tmp_path, text):
+    found = compare(app, times(tmp_path, 4, 4.5, 5, text=text), by=["analysis"])
+    assert (found.holds, found.is_failed) == (True, True)
+    assert "25 % of the values of round-trip lost; but a part of the measurement could not be used" in str(found)
 
 
 def test_a_handle_names_its_callback(app, tmp_path):

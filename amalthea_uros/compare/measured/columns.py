@@ -18,6 +18,8 @@ FORM: Final = "COLUMN[ - COLUMN]=OBJECT[.QUANTITY]"
 #: How it is written which rows have values.
 VALID_FORM: Final = "COLUMN=VALUE[,VALUE]"
 UNITS: Final = {"ps": 1, "ns": NANOSECOND, "us": MICROSECOND, "µs": MICROSECOND, "ms": MILLISECOND, "s": SECOND}
+#: Larger times do not fit into the columns of a measurement.
+LARGEST: Final = 2**62
 #: A header that ends in a unit: `rtt_ms`, `rtt ms`, `rtt (ms)`, `rtt [ms]`.
 _HEADER = re.compile(rf".*[_ (\[]({'|'.join(UNITS)})[)\]]?")
 _MINUS = " - "

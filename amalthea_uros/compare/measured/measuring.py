@@ -133,7 +133,7 @@ def _measured(path: Path, objects: Sequence[Measurable], options: MeasureOptions
     elif objects:
         raise InvalidArgumentError(f"{path.name!r} is not a log of a CAN bus, so it has no frames with markers; omit them")
     elif is_ros_report(path):
-        found = measured_report(path, options.name)
+        found = measured_report(path, options.name, options.window)
     elif is_value_table(path):
         found = measured_values(path, options.window)
     else:

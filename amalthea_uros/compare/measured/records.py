@@ -1,7 +1,8 @@
 """The rows of tables: of CSV, and of the documents that `ros2 topic echo` writes.
 
 In documents, a field in a field has the names of both, such as `header.stamp.sec`; where there are `sec` and `nanosec`, the moment is
-the column before them with its unit: `header.stamp_s`.
+the column before them with its unit: `header.stamp_s`. Between documents, the tool reports how many messages were lost (ros2/ros2cli,
+ros2topic/verb/echo.py), and it ends each document with a line: one without it was cut off.
 """
 
 from __future__ import annotations
@@ -17,10 +18,18 @@ from amalthea_uros.trace.files import TracePlace, TraceProblems
 
 
 class Record(NamedTuple):
-    """A row: the number of its line, and its fields without spaces around them. The first one has the names of the columns."""
+    """A row, or rows that were lost. The first one has the names of the columns.
+
+    Attributes
+    ----------
+    line : its number
+    fields : without spaces around them; empty if nothing of it is known
+    rows : how many were lost, if it has no fields
+    """
 
     line: int
     fields: list[str]
+    rows: int = 1
 
 
 _COMMENT = "#"
@@ -28,43 +37,60 @@ _DELIMITERS = ",;\t"
 #: What ends a document of `ros2 topic echo`.
 _END = "---"
 _FIELD = re.compile(r"( *)([A-Za-z_]\w*):(?: (.*))?")
+_LOST_TITLE = "A message was lost!!!"
+_LOST = re.compile(r"\s*total count change:\s*(\d{1,15})\s*")
 
 
 def read_records(lines: Iterator[str], problems: TraceProblems) -> Iterator[Record]:
-    """The header, then the rows; lines that are none are problems."""
+    """The header, then the rows; lines that are none are problems, and lost rows."""
     numbered = ((number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.startswith(_COMMENT))
     first = next(numbered, None)
     if first is None:
         return iter(())
     rest = chain([first], numbered)
-    is_document = _FIELD.fullmatch(first[1].rstrip("\r\n")) is not None or first[1].strip() == _END
-    return _from_documents(rest) if is_document else _from_csv(rest, first[1], problems)
+    is_document = _FIELD.fullmatch(first[1].rstrip("\r\n")) is not None or first[1].strip() in (_END, _LOST_TITLE)
+    return _from_documents(rest, problems) if is_document else _from_csv(rest, first[1], problems)
 
 
 def _from_csv(lines: Iterator[tuple[int, str]], header: str, problems: TraceProblems) -> Iterator[Record]:
-    delimiter = max(_DELIMITERS, key=header.count)
+    delimiter, width = max(_DELIMITERS, key=header.count), 0
     for number, line in lines:
+        place = TracePlace(number, 1, line.rstrip("\r\n"))
         try:
             # Fields do not go over several lines, so that a quote that is missing spoils one row only.
-            fields = next(csv.reader([line], delimiter=delimiter, strict=True))
+            fields = [field.strip() for field in next(csv.reader([line], delimiter=delimiter, strict=True))]
         except csv.Error as error:
-            place = TracePlace(number, 1, line.rstrip("\r\n"))
-            problems.add("MEA009", Severity.ERROR, f"a line is not CSV: {error}; it is ignored", place)
-            continue
-        yield Record(number, [field.strip() for field in fields])
+            problems.add("MEA009", Severity.ERROR, f"a line is not CSV: {error}; it has no value", place)
+            fields = []
+        width = width or len(fields)
+        if any(fields[width:]):
+            message = "a line has more fields than the header; it has no value"
+            problems.add("MEA009", Severity.ERROR, message, place, _SEPARATORS)
+            fields = []
+        yield Record(number, fields)
 
 
-def _from_documents(lines: Iterator[tuple[int, str]]) -> Iterator[Record]:
+#: A number with a decimal comma would be two fields.
+_SEPARATORS = "If numbers have decimal commas, write them with points."
+
+
+def _from_documents(lines: Iterator[tuple[int, str]], problems: TraceProblems) -> Iterator[Record]:
     names: list[str] = []
-    for number, document in _documents(lines):
+    lost: list[Record] = []
+    for found in _documents(lines, problems):
+        if isinstance(found, Record):
+            lost.append(found)
+            continue
+        number, document = found
         if not names:
             names = list(document)
             yield Record(number, names)
         yield Record(number, [document.get(name, "") for name in names])
+    yield from lost
 
 
-def _documents(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, dict[str, str]]]:
-    """The fields of each document, with the number of its first line."""
+def _documents(lines: Iterator[tuple[int, str]], problems: TraceProblems) -> Iterator[tuple[int, dict[str, str]] | Record]:
+    """The fields of each document, with the number of its first line, and the rows that were lost."""
     fields: dict[str, str] = {}
     parents: list[tuple[int, str]] = []
     first = 1
@@ -73,19 +99,23 @@ def _documents(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, dict[str
             if fields:
                 yield first, _with_moments(fields)
             fields, parents = {}, []
-            continue
-        match = _FIELD.fullmatch(line.rstrip("\r\n"))
-        if match is None:
-            continue
-        first = first if fields else number
-        indent, name, value = len(match[1]), match[2], (match[3] or "").strip()
-        parents = [each for each in parents if each[0] < indent]
-        if value:
-            fields[".".join((*(parent for _, parent in parents), name))] = value
-        else:
-            parents.append((indent, name))
+        elif match := _LOST.fullmatch(line):
+            problems.add("MEA015", Severity.WARNING, "messages were lost, as the tool reports", TracePlace(number, 1, line))
+            yield Record(number, [], int(match[1]))
+        elif match := _FIELD.fullmatch(line.rstrip("\r\n")):
+            first = first if fields else number
+            indent, name, value = len(match[1]), match[2], (match[3] or "").strip()
+            parents = [each for each in parents if each[0] < indent]
+            path = ".".join((*(parent for _, parent in parents), name))
+            if not value:
+                parents.append((indent, name))
+            else:
+                # Of the elements of a list, which one is meant is not known.
+                fields[path] = "" if path in fields else value
     if fields:
-        yield first, _with_moments(fields)
+        message = "the last document is cut off; it counts as lost"
+        problems.add("MEA009", Severity.ERROR, message, TracePlace(first, 1))
+        yield Record(first, [])
 
 
 def _with_moments(fields: dict[str, str]) -> dict[str, str]:

@@ -17,11 +17,13 @@ from pathlib import Path
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.measure.series import MeasuredKind, Measurement, Series, TimeStatistics
+from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.files import TracePlace, TraceProblems, first_characters, opened_text
 from amalthea_uros.units import MILLISECOND, SECOND, Time
 
-_NUMBER = r"(-?\d+(?:\.\d+)?(?:e-?\d+)?)"
+#: Python computes numbers of any size; no tool prints one with so many digits.
+_NUMBER = r"(-?\d{1,15}(?:\.\d{1,30})?(?:e-?\d{1,2})?)"
 _AVERAGE = re.compile(rf"average (delay|rate): {_NUMBER}")
 _OTHERS = re.compile(rf"min: {_NUMBER}s max: {_NUMBER}s std dev: {_NUMBER}s window: (\d+)")
 #: So much of a file is looked at: tools print warnings before the first report.
@@ -33,13 +35,15 @@ def is_ros_report(path: Path) -> bool:
     return any(_AVERAGE.fullmatch(line.strip()) for line in first_characters(path, _BEGIN).splitlines())
 
 
-def measured_report(path: Path, name: str) -> Measurement:
+def measured_report(path: Path, name: str, window: MeasurementWindow) -> Measurement:
     """The statistics of a topic, under a name; the output does not say which topic it is.
 
     Raises
     ------
     ReadError : the file cannot be read.
+    InvalidArgumentError : a part is to be measured of what has no times.
     """
+    window.refuse_part(path.name)
     problems = TraceProblems(path)
     with opened_text(path, problems) as lines:
         reports = list(_reports(lines, problems))
@@ -54,7 +58,6 @@ def measured_report(path: Path, name: str) -> Measurement:
     return Measurement(
         source=str(path),
         format="statistics of a topic",
-        digest="",
         duration=0,
         resolution=MILLISECOND,  # three digits of seconds
         series=(series,),

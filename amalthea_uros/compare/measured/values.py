@@ -6,36 +6,33 @@ Further columns: `quantity`, `kind`, and `time_..`, when a value was complete.
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal, InvalidOperation
-from fractions import Fraction
 from pathlib import Path
 
-from amalthea_uros.diagnostics import Severity
+from amalthea_uros.compare.measured.columns import LARGEST, UNITS
+from amalthea_uros.compare.measured.records import Record, read_records
+from amalthea_uros.compare.measured.table_layout import TimesColumn
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
 from amalthea_uros.measure.series import Counts, MeasuredKind, Measurement, Series
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.trace.files import TracePlace, TraceProblems, opened_text
-from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND
 
-_UNITS = {"ps": 1, "ns": NANOSECOND, "us": MICROSECOND, "ms": MILLISECOND, "s": SECOND}
-_COLUMN = re.compile(r"(value|start|end|time)_(ps|ns|us|ms|s)")
+_COLUMN = re.compile(rf"(value|start|end|time)_({'|'.join(UNITS)})")
 _PLAIN = ("object", "quantity", "kind")
-#: Larger times do not fit into the columns.
-_LARGEST = 2**62
 
 
-def columns_of(header: list[str]) -> dict[str, tuple[int, int]] | None:
-    """The places of the columns, and the picoseconds of their unit; None if it is not a header of measured values."""
-    found: dict[str, tuple[int, int]] = {}
-    for place, name in enumerate(each.strip() for each in header):
+def columns_of(header: Sequence[str]) -> dict[str, list[TimesColumn]] | None:
+    """The columns by what they have, of texts and of times; None if it is not a header of measured values."""
+    found: dict[str, list[TimesColumn]] = {}
+    for place, name in enumerate(header):
         match = _COLUMN.fullmatch(name)
         if match is not None:
-            found[match[1]] = place, _UNITS[match[2]]
+            found.setdefault(match[1], []).append(TimesColumn(place, UNITS[match[2]]))
         elif name in _PLAIN:
-            found[name] = place, 1
+            found.setdefault(name, []).append(TimesColumn(place, 1))
     is_complete = "object" in found and ("value" in found or {"start", "end"} <= found.keys())
     return found if is_complete else None
 
@@ -45,7 +42,8 @@ def is_value_table(path: Path) -> bool:
     if not path.name.lower().removesuffix(".gz").endswith(".csv"):
         return False
     with opened_text(path, TraceProblems(path)) as lines:
-        return columns_of(next(csv.reader([next(lines, "")]), [])) is not None
+        header = next(read_records(lines, TraceProblems(path)), None)
+        return header is not None and columns_of(header.fields) is not None
 
 
 def measured_values(path: Path, window: MeasurementWindow) -> Measurement:
@@ -53,55 +51,61 @@ def measured_values(path: Path, window: MeasurementWindow) -> Measurement:
 
     Raises
     ------
-    ReadError : the file cannot be read.
+    ReadError : the file cannot be read, or two of its columns have the same.
+    InvalidArgumentError : a part is to be measured of values without times.
     """
     problems = TraceProblems(path)
     with opened_text(path, problems) as lines:
-        table = _Table(problems, window)
-        table.read(csv.reader(lines))
+        records = read_records(lines, problems)
+        table = _Table(problems, window, _only_columns(path, next(records, Record(1, []))))
+        if not {"time", "end"} & table.columns.keys():
+            window.refuse_part(path.name)
+        for record in records:
+            table.add(record)
     return Measurement(
         source=str(path),
         format="measured values",
-        digest="",
         duration=table.duration,
-        resolution=None,
         series=tuple(table.series()),
         findings=problems.findings,
     )
+
+
+def _only_columns(path: Path, header: Record) -> dict[str, TimesColumn]:
+    """The columns of a header, of which no two have the same."""
+    found = columns_of(header.fields) or {}
+    for what, columns in found.items():
+        if len(columns) > 1:
+            message = f"the table has {len(columns)} columns with '{what}', and which one is meant is not known"
+            place = Location(path, header.line, 1, ",".join(header.fields))
+            raise ReadError([Finding("MEA016", Severity.ERROR, message, place, "Leave the others out.")])
+    return {what: columns[0] for what, columns in found.items()}
 
 
 @dataclass(slots=True)
 class _Table:
     problems: TraceProblems
     window: MeasurementWindow
+    columns: dict[str, TimesColumn]
     _rows: dict[tuple[str, str, str], list[tuple[int, int | None]]] = field(default_factory=dict)
-    _columns: dict[str, tuple[int, int]] = field(default_factory=dict)
     _first: int | None = None
     _last: int = 0
-
-    def read(self, lines: csv._reader) -> None:  # type: ignore[name-defined]
-        self._columns = columns_of(next(lines, [])) or {}
-        while True:
-            try:
-                for fields in lines:
-                    self._add(lines.line_num, fields)
-                return
-            except csv.Error as error:
-                self._wrong(lines.line_num, f"a line is not CSV: {error}; it is ignored", "")
 
     @property
     def duration(self) -> int:
         """From the first time to the last one."""
         return 0 if self._first is None else self._last - self._first
 
-    def _add(self, line: int, fields: list[str]) -> None:
+    def add(self, record: Record) -> None:
+        """Take a row."""
+        line, fields = record.line, record.fields
         if not fields:
             return
         try:
             name, quantity, kind = (self._text(fields, column, default) for column, default in _DEFAULTS.items())
             time, value = self._times(fields)
             MeasuredKind(kind)
-        except (ValueError, IndexError, InvalidOperation):
+        except (ValueError, IndexError):
             self._wrong(line, "a line has a time or a kind that is wrong, or too few fields; it is ignored", ",".join(fields))
             return
         if value < 0:
@@ -111,33 +115,30 @@ class _Table:
             self._first = time if self._first is None else self._first
             self._last = max(self._last, time)
             offset = time - self._first
-            if not self.window.is_all and not (
-                self.window.start <= offset and (self.window.end is None or offset < self.window.end)
-            ):
+            if not self.window.contains(offset):
                 return
             time = offset
         self._rows.setdefault((name, quantity, kind), []).append((value, time))
 
     def _text(self, fields: list[str], column: str, default: str | None) -> str:
-        place = self._columns.get(column)
-        text = fields[place[0]].strip() if place is not None else default
+        known = self.columns.get(column)
+        text = fields[known.place] if known is not None else default
         if not text:
             raise ValueError(column)
         return text
 
     def _times(self, fields: list[str]) -> tuple[int | None, int]:
         """When the value was complete, if that is known, and the value."""
-        if "value" in self._columns:
-            return (self._time(fields, "time") if "time" in self._columns else None), self._time(fields, "value")
+        if "value" in self.columns:
+            return (self._time(fields, "time") if "time" in self.columns else None), self._time(fields, "value")
         start, end = self._time(fields, "start"), self._time(fields, "end")
         return end, end - start
 
     def _time(self, fields: list[str], column: str) -> int:
-        place, unit = self._columns[column]
-        time = round(Fraction(Decimal(fields[place].strip())) * unit)
-        if abs(time) > _LARGEST:
+        time = self.columns[column].of(fields)
+        if abs(time) > LARGEST:
             raise ValueError(column)
-        return time
+        return round(time)
 
     def _wrong(self, line: int, message: str, text: str) -> None:
         self.problems.add("MEA009", Severity.ERROR, message, TracePlace(line, 1, text))

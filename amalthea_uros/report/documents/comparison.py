@@ -220,7 +220,7 @@ def _outcome(result: Comparison) -> str:
     missing = {row.object for row in result.not_compared} - {row.object for row in result.compared}
     rest = f"; not compared: {counted(len(missing), 'object')}" if missing else ""
     found = f"{counted(len(within), 'comparison')} within {tolerance}{_largest(near)}"
-    return f"Model holds: {found}{differing}{rest}{_scarce(result)}"
+    return f"Model holds: {found}{differing}{rest}{_scarce(result)}{_lost(result)}{_damaged(result)}"
 
 
 #: What is to be said of deviations that contradict nothing.
@@ -239,6 +239,16 @@ def _scarce(result: Comparison) -> str:
     if fewest.samples >= _FEW:
         return ""
     return f"; only {counted(fewest.samples, 'value')} of the {words(fewest.quantity)} of {fewest.object}"
+
+
+def _lost(result: Comparison) -> str:
+    """Of what the greatest share of values was lost, of which nothing is known."""
+    worst = max(result.losses, key=lambda row: row.share, default=None)
+    return "" if worst is None else f"; {_percent(worst.share)} of the values of {worst.object} lost"
+
+
+def _damaged(result: Comparison) -> str:
+    return "; but a part of the measurement could not be used, see the errors" if result.is_damaged else ""
 
 
 #: Smaller deviations are shown as none.
