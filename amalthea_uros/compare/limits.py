@@ -96,11 +96,11 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
 
 
 def _with_losses(limit: MeasuredLimit, series: Series) -> MeasuredLimit:
-    """A limit that was kept, with the remark that what was lost may have missed it."""
+    """The judgement, without one if the values that are known kept an upper limit, but others were lost, which may have missed it."""
     lost = series.counts.lost
     if limit.verdict is not ObservedVerdict.OK or not lost or not limit.is_upper:
         return limit
-    return replace(limit, reason=f"{counted(lost, 'value')} lost, which may be later")
+    return replace(limit, verdict=ObservedVerdict.NOT_OBSERVED, reason=f"{counted(lost, 'value')} lost, which may be later")
 
 
 def _not_measured(limit: SystemLimit) -> str:

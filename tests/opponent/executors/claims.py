@@ -21,7 +21,7 @@ from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
-from amalthea_uros.timing.activation.activations import comes_back
+from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MILLISECOND
 from amalthea_uros.uros.described import describe_content
@@ -89,7 +89,7 @@ def _contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]
     client are sent when it reads, which can be in bursts; the analysis has those of callbacks, which take one message at a time.
     """
     system = analysis.solution.context.system
-    loose = {name for name, each in system.transmissions.items() if comes_back(each, system)}
+    loose = {name for name, each in system.transmissions.items() if relayed(each, system)}
     loose |= {each.acknowledges for each in system.transmissions.values() if each.acknowledges in loose}
     for text in contradictions(analysis, simulation):
         if not (set(text.split()) & loose and re.match(r"(activate|start|end)_to_", text)):
