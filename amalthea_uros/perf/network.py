@@ -12,6 +12,11 @@ from enum import StrEnum
 from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import Time
 
+#: Losses in a time at most, as in descriptions: each takes a place in the memory of a simulation.
+MOST_LOST = 1000
+#: Probabilities of losses are whole numbers of billionths.
+BILLION = 10**9
+
 
 class WireKind(StrEnum):
     """What a wire is."""

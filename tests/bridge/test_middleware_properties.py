@@ -41,7 +41,10 @@ NETWORK = Network(
             kind=WireKind.SERIAL,
             cores=("C",),
             loses_messages=True,
-            losses=(Losses(directions=(Direction.TO_AGENT,), count=1, window=10**13), Losses(directions=(), per_billion=10**6)),
+            losses=(
+                Losses(directions=(Direction.TO_AGENT,), count=1, window=10**13),
+                Losses(directions=(Direction.TO_CONTROLLER,), per_billion=10**6),
+            ),
             recovery=Recovery(asks_after=10**11, agent_asks_every=2 * 10**11, sent_parts=4),
         ),
     ),
@@ -149,6 +152,18 @@ def test_an_executor_that_cannot_be_read_is_a_finding_and_its_task_unknown(befor
             "undefined process 'X'",
             {"Received"},
         ),
+        ("&quot;count&quot;:1", "&quot;count&quot;:0", "neither a number in a time nor a probability", set()),
+        ("&quot;count&quot;:1", "&quot;count&quot;:-1", "neither a number in a time nor a probability", set()),
+        ("&quot;count&quot;:1", "&quot;count&quot;:1001", "neither a number in a time nor a probability", set()),
+        ("&quot;window&quot;:1", "&quot;window&quot;:-1", "neither a number in a time nor a probability", set()),
+        # More than a word of memory holds, in which it would lose nothing.
+        ("&quot;window&quot;:1", "&quot;window&quot;:1" + 9 * "0", "neither a number in a time nor a probability", set()),
+        ("&quot;per_billion&quot;:1", "&quot;per_billion&quot;:-1", "neither a number in a time nor a probability", set()),
+        ("&quot;per_billion&quot;:1", "&quot;per_billion&quot;:1000", "neither a number in a time nor a probability", set()),
+        ("&quot;directions&quot;:[&quot;to the agent&quot;]", "&quot;directions&quot;:[]", "need one direction or both", set()),
+        ("&quot;asks_after&quot;:1", "&quot;asks_after&quot;:-1", "not above zero", set()),
+        ("&quot;agent_asks_every&quot;:2", "&quot;agent_asks_every&quot;:-2", "not above zero", set()),
+        ("&quot;sent_parts&quot;:4", "&quot;sent_parts&quot;:0", "not above zero", set()),
     ],
 )
 def test_a_network_that_cannot_be_read_is_a_finding(before, after, message, left, tmp_path):

@@ -13,11 +13,14 @@ from traces import said
 from whole_player import MS, S
 
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.executors.semantics.steps import with_steps
 from amalthea_uros.judge.verdict import Verdict
+from amalthea_uros.perf.network import Network
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.program.build import build_program
+from amalthea_uros.simulate.runs import driver
 from amalthea_uros.simulate.runs.evaluation import RunEvaluation
 from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.simulate.runs.run import simulate_system
@@ -26,7 +29,7 @@ from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import EventKind
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import MILLISECOND, SECOND
 from amalthea_uros.uros.described import describe_content, describe_text
 
 BLOCK = 20
@@ -386,6 +389,32 @@ def test_the_assumptions_state_the_losses():
     assumptions = simulate_system(system, Options(duration=SECOND)).assumptions
     assert "'Transport' loses at most 1 message in any 10 s" in assumptions
     assert not any("no message is lost" in each for each in assumptions)
+
+
+def test_the_best_mode_says_that_nothing_is_lost():
+    system = describe_text(TEXT.replace(STATED, "1 per 10 s")).assembly.system
+    assumptions = simulate_system(system, Options(duration=SECOND, mode=SimulationMode.BEST)).assumptions
+    assert "no message is lost on 'Transport' in the mode best, whatever losses are stated" in assumptions
+
+
+def test_a_run_in_which_answers_multiply_ends_and_says_so(monkeypatch):
+    """Every 2 ms something is sent to an executor that reads every 400 ms; each answer about a gap makes the agent send again."""
+    monkeypatch.setattr(driver, "MOST_MESSAGES", 1024)
+    text = RELIABLE.replace("loop: {spin: 1 s}", "loop: {spin_some: 10 ms, sleep: 400 ms}").replace(
+        "time: 1 ms}]}", "time: 1 us}]}"
+    )
+    text = text.replace(EVERY, "2 ms\n          phase: 10 ms").replace(STATED, "30 %")
+    found = simulate_system(describe_text(text).assembly.system, Options(duration=1000 * SECOND))
+    (finding,) = [each for each in found.findings if each.rule == "SIM006"]
+    assert finding.severity is Severity.ERROR
+    assert "more than 1,024 messages" in finding.message
+    assert found.executors["Executor"].iterations < 1000 * SECOND // (400 * MILLISECOND)
+
+
+def test_an_executor_whose_messages_are_undefined_is_left_out():
+    system = replace(describe_text(TEXT).assembly.system, network=Network())
+    reasons = {each.name: each.reason for each in simulate_system(system, Options(duration=SECOND)).left_out}
+    assert reasons["Executor"] == "it receives messages for 'go': 'go_topic_to_go' is undefined"
 
 
 def test_a_reliable_message_of_a_task_without_a_loop_is_left_out():

@@ -18,7 +18,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf.executors import Executor
-from amalthea_uros.perf.network import Network, Purpose, Transmission
+from amalthea_uros.perf.network import BILLION, MOST_LOST, Losses, Network, Purpose, Recovery, Transmission
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.perf.system import System
 
@@ -129,9 +129,30 @@ def _flaw_of_executor(executor: Executor, system: System) -> str | None:
 
 def _flaw_of_network(network: Network, system: System) -> str | None:
     cores = (core for wire in network.wires for core in wire.cores)
-    return _missing("core", cores, system.cores) or _missing(
-        "runnable", (each.runnable for each in network.waits), system.runnables
-    )
+    flaws = [
+        _missing("core", cores, system.cores),
+        _missing("runnable", (each.runnable for each in network.waits), system.runnables),
+        *(_flaw_of_losses(losses) for wire in network.wires for losses in wire.losses),
+        *(_flaw_of_recovery(wire.recovery) for wire in network.wires if wire.recovery is not None),
+    ]
+    return next(filter(None, flaws), None)
+
+
+def _flaw_of_losses(losses: Losses) -> str | None:
+    """What no description can state: it would lose less than it says, or make a simulation fail."""
+    is_counted = 1 <= losses.count <= MOST_LOST and 0 < losses.window < 2**63 and not losses.per_billion
+    is_share = not losses.count and not losses.window and 0 < losses.per_billion < BILLION
+    if not losses.directions or len(set(losses.directions)) < len(losses.directions):
+        return "losses need one direction or both"
+    return None if is_counted or is_share else "losses are neither a number in a time nor a probability"
+
+
+def _flaw_of_recovery(recovery: Recovery) -> str | None:
+    """A side that asks again after no time would never do anything else."""
+    if not (0 < recovery.asks_after < 2**63 and 0 < recovery.agent_asks_every < 2**63):
+        return "the times until missing acknowledgements are asked for are not above zero"
+    parts = recovery.sent_parts, recovery.received_parts, recovery.agent_sent_parts
+    return "a number of parts is not above zero" if any(each is not None and each < 1 for each in parts) else None
 
 
 def _flaw_of_transmission(transmission: Transmission, network: Network, system: System) -> str | None:

@@ -244,8 +244,11 @@ class IterationCompiler:
         elif handle.transmission is None:
             if not handle.interval:
                 raise UnknownError(f"it is not specified how often something arrives for {handle.name!r}")
-        elif reason := self.records.messages.obstacle(self.body.context.system.transmissions[handle.transmission]):
-            raise UnknownError(f"it receives messages for {handle.name!r}: {reason}")
+        else:
+            received = self.body.context.system.transmissions.get(handle.transmission)
+            reason = f"{handle.transmission!r} is undefined" if received is None else self.records.messages.obstacle(received)
+            if reason:
+                raise UnknownError(f"it receives messages for {handle.name!r}: {reason}")
 
     def _check_publication(self, publication: Publication) -> None:
         """Refuse a publication of which it is unknown how long it waits for its acknowledgement."""

@@ -8,7 +8,7 @@ from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.executors.semantics.losses import losses_text
 from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.distributions import Uniform
-from amalthea_uros.perf.network import Direction, Losses, Purpose, Transmission, Wire
+from amalthea_uros.perf.network import BILLION, Direction, Losses, Purpose, Transmission, Wire
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.losses import MOST_PASSING
 from amalthea_uros.simulate.kernel.message_records import MOST_PARTS
@@ -19,9 +19,9 @@ from amalthea_uros.simulate.sampling.streams import ValueStream, choices, consta
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.trace.table import EntityKind
 
-_BILLION = 10**9
 #: Of times, so that the values of a stream fit into 62 bits.
 _LONGEST = 2**58
+_NONE_IN_BEST = "no message is lost on {!r} in the mode best, whatever losses are stated"
 _AGAIN = "the agent takes as long to send a message again as to send it for the first time"
 
 
@@ -131,6 +131,8 @@ class FlowRecords:
     def _losses(self, wire: Wire, direction: Direction) -> list[int]:
         """The records of what loses messages in a direction; one record for both if they are counted together."""
         if self.messages.resources.options.mode is SimulationMode.BEST:
+            if wire.losses:
+                self.messages.resources.context.notes.assume(_NONE_IN_BEST.format(wire.name))
             return []
         records = self.messages.losses
         here = [losses for losses in wire.losses if direction in losses.directions]
@@ -162,7 +164,7 @@ class FlowRecords:
         directions = " and ".join(losses.directions)
         source = RandomSource(resources.options.seed, f"losses on {wire.name} {directions}")
         if not losses.window:
-            return choices([_BILLION - losses.per_billion, losses.per_billion], SimulationMode.SAMPLED, source)
+            return choices([BILLION - losses.per_billion, losses.per_billion], SimulationMode.SAMPLED, source)
         if resources.options.mode is SimulationMode.WORST:
             return constant(0)
         # The time, and how many messages get through then before one is lost.

@@ -28,6 +28,8 @@ _MARGIN = 4096
 _VALUES, _LEAST_VALUES, _MOST_VALUES = 2**20, 32, 4096
 #: Records of messages to begin with.
 _MESSAGES = 64
+#: Of messages at a time if some can be lost: with each answer about a gap, more are sent again, so that they can multiply without end.
+MOST_MESSAGES = 2**13
 #: Occurrences that are prepared at a time, about.
 _OCCURRENCES = 8192
 
@@ -42,6 +44,7 @@ class KernelDriver:
     traced : the part of the run of which events are recorded
     is_compiled : whether the kernel is machine code by now
     endless : the record of the process of which a job continues forever without taking time, at which the run has ended; 0: none
+    multiplied : number of messages at which the run has ended because those that are sent again multiply; 0: it has not
     """
 
     program: KernelProgram
@@ -53,6 +56,7 @@ class KernelDriver:
     memory: Memory = field(init=False)
     is_compiled: bool = field(init=False, default=False)
     endless: int = field(init=False, default=0)
+    multiplied: int = field(init=False, default=0)
     _thread: ThreadPoolExecutor | None = None
     _handed: deque[Future[None]] = field(default_factory=deque)
     _regions: dict[int, int] = field(default_factory=dict)
@@ -82,8 +86,13 @@ class KernelDriver:
             self.memory[first] = self._regions[first]
             self.memory[end] = self._regions[first] + places
 
+    @property
+    def has_ended_early(self) -> bool:
+        """Whether nothing can be simulated any more."""
+        return self.endless != 0 or self.multiplied != 0
+
     def run(self) -> None:
-        """Run to the end, or until a job continues forever without taking time."""
+        """Run to the end, or until nothing can be simulated any more."""
         began = perf_counter()
         try:
             self._run_to_end(began)
@@ -99,12 +108,12 @@ class KernelDriver:
         self._consider_machine_code(0, 0)
         edges = sorted({edge for edge in (*self.traced, self.until) if 0 < edge <= self.until})
         for edge in edges:
-            while time < edge and not self.endless:
+            while time < edge and not self.has_ended_early:
                 self.memory[layout.IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
                 time = min(edge, time + window)
                 count = self._prepare(time)
                 self._run_window(time)
-                if not self.is_compiled and not self.endless:
+                if not self.is_compiled and not self.has_ended_early:
                     self._consider_machine_code(perf_counter() - began, (self.until - time) / time)
                 if 2 * count < _OCCURRENCES:
                     window *= 2
@@ -123,6 +132,9 @@ class KernelDriver:
             elif code == layout.QUEUE_FULL:
                 self._grow_queues()
             elif code == layout.NO_MESSAGES:
+                if self.program.lossy and self._messages >= MOST_MESSAGES:
+                    self.multiplied = self._messages
+                    return
                 self._add_messages()
             elif code == layout.ENDLESS:
                 # What was observed up to here counts.

@@ -87,13 +87,19 @@ class SimulationRun:
         """Run to the end, and write the events."""
         self.sinks = sinks
         self.driver.run()
-        if self.driver.endless:
-            name = next(name for name, record in self.program.records.items() if record == self.driver.endless)
+        if self.driver.has_ended_early:
             now = int(self.driver.memory[layout.NOW])
             self.end = max(1, now)
-            at = time_text(Fraction(now, self.program.units))
-            message = f"at {at}, {name!r} executes activities forever without taking time; the run ends there"
-            self.context.notes.error("SIM003", message, self.context.system.processes[name])
+            self._say_why_it_ended(time_text(Fraction(now, self.program.units)))
+
+    def _say_why_it_ended(self, at: str) -> None:
+        if self.driver.multiplied:
+            message = f"at {at}, more than {self.driver.multiplied:,} messages are on their way or wait; the run ends there"
+            self.context.notes.error("SIM006", message, None)
+            return
+        name = next(name for name, record in self.program.records.items() if record == self.driver.endless)
+        message = f"at {at}, {name!r} executes activities forever without taking time; the run ends there"
+        self.context.notes.error("SIM003", message, self.context.system.processes[name])
 
     def _observe(self, rows: Numbers) -> None:
         """Give rows about chains and about other occurrences to those that they are for."""
