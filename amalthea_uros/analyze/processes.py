@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
@@ -18,7 +18,6 @@ from amalthea_uros.judge.limits import activation_limit, deadline_limit, deadlin
 from amalthea_uros.judge.verdict import Verdict, lost_jobs, prove_process
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Preemption, Process, Task
-from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.basics.time_base import max_time, min_time
@@ -53,8 +52,8 @@ def _can_wait(executor: Executor) -> bool:
     return executor.session is not None or any(handle.publications for handle in executor.handles)
 
 
-def _is_sent_by_executor(name: str, system: System) -> bool:
-    handles = (handle for executor in system.executors for handle in executor.handles)
+def _is_sent_by(name: str, executors: Iterable[Executor]) -> bool:
+    handles = (handle for executor in executors for handle in executor.handles)
     return any(publication.transmission == name for handle in handles for publication in handle.publications)
 
 
@@ -78,7 +77,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
     # Iterations, and what they send, can be later than any time that is stated.
     iterates = activated_with(name, context) is not None
-    is_stated = response is None and not iterates and not _is_sent_by_executor(name, context.system)
+    is_stated = response is None and not iterates and not _is_sent_by(name, context.system.executors)
     events = solution.event_models.get(name) or (context.stated_activations(name) if is_stated else None)
     scheduled = context.scheduled.get(name)
     deadline = deadline_of(name, context)
