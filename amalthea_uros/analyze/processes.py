@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
@@ -52,6 +52,11 @@ def _can_wait(executor: Executor) -> bool:
     return executor.session is not None or any(handle.publications for handle in executor.handles)
 
 
+def _is_sent_by(name: str, executors: Iterable[Executor]) -> bool:
+    handles = (handle for executor in executors for handle in executor.handles)
+    return any(publication.transmission == name for handle in handles for publication in handle.publications)
+
+
 def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:
     """The result, which says so if an order of priorities could decide what is unknown."""
     item = solution.context.scheduled.get(found.name)
@@ -70,9 +75,9 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
     process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
-    # An iteration can last longer than any time that is stated.
+    # Iterations, and what they send, can be later than any time that is stated.
     iterates = activated_with(name, context) is not None
-    is_stated = response is None and not iterates
+    is_stated = response is None and not iterates and not _is_sent_by(name, context.system.executors)
     events = solution.event_models.get(name) or (context.stated_activations(name) if is_stated else None)
     scheduled = context.scheduled.get(name)
     deadline = deadline_of(name, context)

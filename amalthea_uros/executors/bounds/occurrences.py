@@ -4,7 +4,8 @@
   one call at most. It is sent between the earliest and the latest end of the callback after that, so that the difference is its
   jitter. A timer that is late keeps its grid, so that a message is at most two periods late, whatever the iterations take.
 - Between the same instants of two calls of a callback are a whole callback, with what it waits for, the overhead of an iteration, and
-  the sleep: a minimum distance that holds without any of these bounds.
+  the sleep: a minimum distance that holds without any of these bounds. A message that is sent at different places of the callback has
+  only the rest of the iteration between two of them, and the whole callback as jitter (`sending_places`).
 - The agent acknowledges a publication that waits, and does not time out, before the callback ends, so that the same holds for that.
 - The client acknowledges each part of a message, and each heartbeat, when it reads it: at most the greatest age of the receive backlog
   after its arrival, and the rest of the cycle.
@@ -24,6 +25,7 @@ from amalthea_uros.executors.bounds.backlog import Arriving, acknowledged, times
 from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.evaluate import handle_result
 from amalthea_uros.executors.bounds.publications import sending_times
+from amalthea_uros.executors.bounds.sending_places import sending_places
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
 from amalthea_uros.executors.results import HandleResult
@@ -139,16 +141,21 @@ def _calls(
     handle: Handle, publication: Publication, result: HandleResult, cycle: Cycle, extra_jitter: Mapping[str, Time | None]
 ) -> EventModel | None:
     """When the calls of a handle publish; None if nothing bounds that."""
-    distance = max(cycle.shortest_with(handle), _shortest_write(publication, cycle.solved))
+    places = sending_places(handle, publication, cycle.executor.task, cycle.solved.context)
+    if places is None:
+        return None
+    between = cycle.shortest_with(handle) if places.is_same else cycle.shortest
+    distance = max(between if places.most == 1 else 0, _shortest_write(publication, cycle.solved))
     ready = _made_ready(handle, extra_jitter)
     worst, late = result.response.worst, None
     if worst is not None:
-        late = worst - result.response.best
+        late = worst - (result.response.best if places.is_same else 0)
     if ready is not None and handle.kind is HandleKind.TIMER:
         late = min(2 * ready.period, 2 * ready.period if late is None else late)
     if ready is None or late is None:
         return SporadicEvents(distance) if distance else None
-    return type(ready)(ready.period, ready.jitter + late, distance)
+    calls = type(ready)(ready.period, ready.jitter + late, distance if places.most == 1 else 0)
+    return calls if places.most == 1 else Multiplied(calls, places.most)
 
 
 def _shortest_write(publication: Publication, solved: SolvedSystem) -> Time:

@@ -21,8 +21,8 @@ are stored when a wait blocks. If the condition does not hold, n is what the han
 A message is read at most Q after its arrival. If it ends a wait, the check follows B later, and takes another one if n are stored
 already. Of the checks after that, the n-th at the latest takes it, each of which follows Lb, the wait and B after the one before: at
 most L2 + G with the greatest distance G of two messages that come for certain, or the longest cycle with the whole timeout. If its
-handle is the only one of the executor, nothing can be before it in the backlog when nothing of it is taken: H = 0, so that n = 1, and
-the next message of the handle arrives after the wait has begun, and ends it.
+handle is the only one of the executor, and waits last longer than B, they read until a message comes, and no message is in the backlog
+when nothing is taken: H = 0, so that n = 1, and the next message of the handle arrives after the wait has begun, and ends it.
 
 If it is the only one, and delta(2) > I + L2 with the longest cycle I without a callback, nothing is ever stored: a message that arrives
 in such a cycle is taken I later, and the next one arrives after the wait that follows has begun. Then it is taken after L2 at most, as
@@ -77,7 +77,8 @@ class StorageConditions:
     until_timeout : longest time from a check to the next one, with the whole timeout between them; None if it is not bounded
     age : greatest age of the receive backlog
     gaps : greatest distances of messages that come for certain, of some handles of the executor
-    idle : longest cycle without a callback, if the executor has no other handle; None if it has
+    idle : longest cycle without a callback, if the executor has no other handle, and its waits cannot time out while they answer
+        what comes before a message; None otherwise
     room : most messages that can be stored for the handle; None if nothing limits them
     """
 
@@ -131,7 +132,7 @@ def storage_of(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | N
         until_timeout=cycle.longest_with(longest_wait(executor)),
         age=age,
         gaps=gaps,
-        idle=cycle.longest_without_call if executor.handles == (handle,) else None,
+        idle=cycle.longest_without_call if executor.handles == (handle,) and until_check < longest_wait(executor) else None,
         room=min((limit for limit in (handle.depth, executor.waiting.slots) if limit is not None), default=None),
     ).longest
 

@@ -135,7 +135,8 @@ def read_acknowledgement(m: Memory, message: int) -> int:
     flow = m[message + ABOUT]
     if flow:
         acknowledged(m, flow, m[message + UP_TO])
-        while m[message + MISSING]:
+        # What is missing on a wire without losses is on its way: a driver can keep it longer than what was sent after it.
+        while m[message + MISSING] and m[flow + SENT_AGAIN_ON]:
             code = _send_again(m, flow, message)
             if code:
                 return code

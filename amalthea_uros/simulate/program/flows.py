@@ -79,16 +79,15 @@ class FlowRecords:
             layout.FLOW: self._flow(messages.inboxes[executor.name], transmission.direction, wire),
             layout.PARTS_OF: parts(reply, system),
         }
-        if is_received:
+        if wire.losses:
+            messages.sent_again.add(transmission.name)
+        if wire.losses and is_received:
+            messages.resources.context.notes.assume(_AGAIN)
             # All of a flow wait in one queue of the agent.
             line = messages.image.words[fields[layout.FLOW] + layout.SENT_AGAIN_ON] or messages.line(
                 transmission, messages.delay(f"again {transmission.name}", transmission.agent), layout.TO_WIRE
             )
             messages.image.put(fields[layout.FLOW], {layout.SENT_AGAIN_ON: line})
-        if wire.losses:
-            messages.sent_again.add(transmission.name)
-            if is_received:
-                messages.resources.context.notes.assume(_AGAIN)
         messages.image.put(record, fields)
 
     def _flow(self, inbox: int, direction: Direction, wire: Wire) -> int:
