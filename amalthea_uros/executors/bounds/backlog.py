@@ -12,8 +12,9 @@ with the most arrivals eta in such a window; nothing is unread after it if eta(k
 Publications that wait read all messages up to their acknowledgement. It is read by them, and does not add to the others, unless they
 can time out before it comes. If they cannot, nothing is unread that arrived before it, and u begins anew: so the cycles after the
 first one contain no such publication, and take at most M instead of L. So at most N = max over k of eta(L + (k - 1) M) - (k - 1) are
-unread, unless such a publication of the running cycle is still to read them, at most L later. What arrives is read at most L + (N - 1) M later, or in a cycle before that, by its publication: Q = 2 L + (N - 2) M, or L if
-N = 1. At any time, the unread messages of a kind are those that came in the last Q, at most its eta(Q).
+unread, unless such a publication of the running cycle is still to read them, at most L later. What arrives is read at most
+L + (N - 1) M later, or in a cycle before that, by its publication: Q = 2 L + (N - 2) M, or L if N = 1. At any time, the unread
+messages of a kind are those that came in the last Q, at most its eta(Q).
 
 L contains the times of publications and of acknowledgements, which contain the unread messages. That the least solution of these
 equations holds is shown by induction over time: until some time was longer than in it, no cycle was longer than L, so that no more

@@ -94,7 +94,7 @@ class SimulationRun:
 
     def _say_why_it_ended(self, at: str) -> None:
         if self.driver.multiplied:
-            message = f"at {at}, more than {self.driver.multiplied:,} messages are on their way or wait; the run ends there"
+            message = f"at {at}, more than {self.driver.multiplied:,} messages are in transit or wait; the run ends there"
             self.context.notes.error("SIM006", message, None)
             return
         name = next(name for name, record in self.program.records.items() if record == self.driver.endless)

@@ -78,7 +78,7 @@ def runs_of(duration: int, seeds: Iterable[int]) -> list[Options]:
     return [*(Options(duration=duration, mode=mode) for mode in modes), *sampled]
 
 
-#: The runs of an application unless it is told otherwise.
+#: The runs of an application by default.
 RUNS = runs_of(DURATION, (1, 2))
 
 
