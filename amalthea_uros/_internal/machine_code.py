@@ -14,9 +14,13 @@ from pathlib import Path
 LOADING = 0.5
 
 
+#: What numba reads in the working folder (numba.core.config): it can name a folder with machine code, which would be executed.
+_SETTINGS = ".numba_config.yaml"
+
+
 def is_available() -> bool:
-    """Whether numba is installed (`pip install amuros[fast]`)."""
-    return find_spec("numba") is not None
+    """Whether numba is installed (`pip install amuros[fast]`), and no settings in the working folder say what it executes."""
+    return find_spec("numba") is not None and not Path(_SETTINGS).exists()
 
 
 @dataclass(slots=True)
@@ -74,7 +78,9 @@ class CompilationEffort:
         self.reported = is_used
         import logging
 
-        if not is_available():
+        if Path(_SETTINGS).exists():
+            why = f"numba would follow {_SETTINGS} in the working folder"
+        elif not is_available():
             why = "numba is not installed (pip install amuros[fast])"
         elif self.is_kept():
             why = "compiled by an earlier run"

@@ -14,6 +14,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
+from amalthea_uros._internal.own_processes import forget_working_folder
 from amalthea_uros.cli.ends import INTERRUPTED, failed, say
 
 #: Signals after which everything is cleaned up; one that the caller ignores, as `nohup` does, remains ignored.
@@ -63,7 +64,8 @@ def _code() -> int:
 
 
 def _prepare() -> None:
-    """Have signals end the process, and let the standard streams take every text; collect garbage rarely."""
+    """Trust no code of the working folder; have signals end the process, and let the standard streams take every text; collect garbage rarely."""
+    forget_working_folder()
     gc.set_threshold(GARBAGE_THRESHOLD)
     for name in _SIGNALS:
         number = getattr(signal, name, None)

@@ -18,6 +18,7 @@ import click
 
 from amalthea_uros._internal.files import STANDARD_INPUT, FileError, is_directory, list_directory, read_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.own_processes import own_command
 from amalthea_uros._internal.paths import is_description
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.cli.output import show_line
@@ -53,7 +54,7 @@ def _repeat(inputs: list[Path]) -> NoReturn:
     words = [word for word in sys.argv[1:] if word != _OPTION]
     while True:
         before = _state(inputs)
-        subprocess.run([sys.executable, "-m", "amalthea_uros", *words], check=False)
+        subprocess.run(own_command(words), check=False)
         show_line(f"watching {counted(len(before), 'file')} for changes; Ctrl-C ends it")
         changed = _wait_for_change(inputs, before)
         show_line(f"{', '.join(map(str, changed))} changed; running again")

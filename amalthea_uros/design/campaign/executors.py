@@ -17,6 +17,7 @@ from multiprocessing import active_children, get_context
 from typing import Any, TypeAlias
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros._internal.own_processes import can_start_safely, safe_start
 from amalthea_uros._version import __version__
 from amalthea_uros.design.campaign.run import CampaignRun, Job, RunOutcome
 from amalthea_uros.errors import AmurosError, InvalidArgumentError
@@ -52,7 +53,7 @@ def executor_for(runs: int, workers: int | None, cluster_address: str | None) ->
     if cluster_address is not None:
         return cluster(cluster_address)
     count = min(runs, _available_cores() if workers is None else workers)
-    return processes(count) if count > 1 else serial
+    return processes(count) if count > 1 and can_start_safely() else serial
 
 
 def _available_cores() -> int:
@@ -104,13 +105,14 @@ class _Pool:
         self._pool = self._start()
 
     def _start(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(
-            self._count, get_context("spawn"), initializer=_install, initargs=(self._job, _LOGGER.isEnabledFor(logging.INFO))
-        )
+        with safe_start():
+            return ProcessPoolExecutor(
+                self._count, get_context("spawn"), initializer=_install, initargs=(self._job, _LOGGER.isEnabledFor(logging.INFO))
+            )
 
     def submit(self, runs: Sequence[CampaignRun]) -> Future[list[RunOutcome]]:
         """Have some runs executed."""
-        with _blocked_interrupts():
+        with _blocked_interrupts(), safe_start():
             try:
                 return self._pool.submit(_execute_installed, runs)
             except _BREAKING:
