@@ -47,5 +47,9 @@ SOURCE_SIZE = _FACTOR * 4 * 2**20
 SOURCES_SIZE = _FACTOR * 32 * 2**20
 #: Files of source code.
 SOURCE_FILES = _FACTOR * 5_000
+#: Occurrences of a stimulus in a simulation: machine code takes minutes for so many, Python hours.
+SIMULATED_OCCURRENCES = _FACTOR * 1_000_000_000
+#: Numbers in the queues of activations that wait in a simulation; each takes up to 40 bytes.
+WAITING_NUMBERS = _FACTOR * 2**24
 #: Nodes of syntax trees that are visited, those of a function once for each of its calls.
 SOURCE_NODES = _FACTOR * 500_000

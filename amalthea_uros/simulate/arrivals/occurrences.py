@@ -46,22 +46,30 @@ class StimulusOccurrences:
         self.assumptions = assumptions
         self._blocks = blocks
         self._end = 0
-        self._pending = np.empty(0, np.int64)
+        self._pending: list[Numbers] = []
 
     def until(self, limit: int) -> Numbers:
         """The occurrences from the last limit on, before this one."""
-        found = [self._pending]
         while self._end < limit:
-            block = next(self._blocks, None)
-            if block is None:
-                self._end = limit
-                break
-            self._end = block.end
-            found.append(block.times[np.searchsorted(block.times, 0) :])
-        times = np.concatenate(found) if len(found) > 1 else found[0]
+            self._read_block(limit)
+        times = np.concatenate(self._pending) if self._pending else np.empty(0, np.int64)
         reached = int(np.searchsorted(times, limit))
-        self._pending = times[reached:]
+        self._pending = [times[reached:]]
         return times[:reached]
+
+    def reach(self, start: int, limit: int, most: int) -> int:
+        """A time after `start`, up to a limit, before which there are at most about so many occurrences: not many more than a block."""
+        while self._end < limit and (self._end <= start or sum(map(len, self._pending)) < most):
+            self._read_block(limit)
+        return min(self._end, limit)
+
+    def _read_block(self, limit: int) -> None:
+        block = next(self._blocks, None)
+        if block is None:
+            self._end = limit
+            return
+        self._end = block.end
+        self._pending.append(block.times[np.searchsorted(block.times, 0) :])
 
 
 def block_size(longest: int) -> int:

@@ -30,6 +30,7 @@ from amalthea_uros.simulate.arrivals.rates import scenario, variable_rate
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.sampling.variates import sampling_assumption
 from amalthea_uros.simulate.sampling.words import RandomSource
+from amalthea_uros.units import Time
 
 
 def occurrences(
@@ -46,6 +47,17 @@ def occurrences(
     UnknownError : its attributes are invalid or contradict each other, or it has no meaning.
     """
     return StimulusOccurrences(_blocks(stimulus, system, mode, source, time_base), tuple(_assumptions(stimulus, mode)))
+
+
+def least_count(stimulus: Stimulus, duration: Time) -> int:
+    """How often a stimulus occurs at least in a duration from 0, where its attributes say so directly; 0 for all others."""
+    match stimulus:
+        case Periodic(period=period, offset=offset) if period > 0:
+            return max(0, (duration - offset) // period)
+        case Synthetic(period=period, offset=offset, times=times) if period > 0:
+            return max(0, (duration - offset - max(times, default=0)) // period) * len(times)
+        case _:
+            return 0
 
 
 def _blocks(stimulus: Stimulus, system: System, mode: SimulationMode, source: RandomSource, time_base: int) -> OccurrenceBlocks:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from amalthea_uros._internal.limits import SIMULATED_OCCURRENCES
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter, EventTriggered, InterProcess, Periodic, Stimulus
-from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
+from amalthea_uros.simulate.arrivals import StimulusOccurrences, least_count, occurrences
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.layout import FIRE, TAKE_MESSAGE
 from amalthea_uros.simulate.options import SimulationMode
@@ -23,7 +24,7 @@ from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.activation.releases import known_releases, nominal_period, own_counters
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.trace.table import EntityKind
-from amalthea_uros.units import Time
+from amalthea_uros.units import Time, time_text
 
 
 @dataclass(slots=True)
@@ -74,6 +75,11 @@ class StimulusRecords:
 
     def _occurrences(self, stimulus: Stimulus) -> StimulusOccurrences:
         options, context = self.resources.options, self.resources.context
+        if (count := least_count(stimulus, options.duration)) > SIMULATED_OCCURRENCES:
+            raise UnknownError(
+                f"{stimulus.name!r} occurs {count:,} times in {time_text(options.duration)}; at most {SIMULATED_OCCURRENCES:,} "
+                "occurrences of a stimulus are simulated"
+            )
         source = RandomSource(options.seed, f"stimulus {stimulus.name}")
         found = occurrences(stimulus, context.system, options.mode, source, self.resources.units)
         for sentence in found.assumptions:

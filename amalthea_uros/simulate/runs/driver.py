@@ -12,6 +12,7 @@ from typing import TypeAlias, cast
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.limits import WAITING_NUMBERS
 from amalthea_uros.simulate.kernel import layout, machine_code
 from amalthea_uros.simulate.kernel.layout import Memory
 from amalthea_uros.simulate.kernel.loop import run_kernel
@@ -45,6 +46,7 @@ class KernelDriver:
     is_compiled : whether the kernel is machine code by now
     endless : the record of the process of which a job continues forever without taking time, at which the run has ended; 0: none
     multiplied : number of messages at which the run has ended because those that are sent again multiply; 0: it has not
+    has_no_place : whether the run has ended because no more activations that wait can be kept
     """
 
     program: KernelProgram
@@ -57,6 +59,7 @@ class KernelDriver:
     is_compiled: bool = field(init=False, default=False)
     endless: int = field(init=False, default=0)
     multiplied: int = field(init=False, default=0)
+    has_no_place: bool = field(init=False, default=False)
     _thread: ThreadPoolExecutor | None = None
     _handed: deque[Future[None]] = field(default_factory=deque)
     _regions: dict[int, int] = field(default_factory=dict)
@@ -89,7 +92,7 @@ class KernelDriver:
     @property
     def has_ended_early(self) -> bool:
         """Whether nothing can be simulated any more."""
-        return self.endless != 0 or self.multiplied != 0
+        return self.endless != 0 or self.multiplied != 0 or self.has_no_place
 
     def run(self) -> None:
         """Run to the end, or until nothing can be simulated any more."""
@@ -110,7 +113,7 @@ class KernelDriver:
         for edge in edges:
             while time < edge and not self.has_ended_early:
                 self.memory[layout.IS_TRACED] = int(self.traced[0] <= time < self.traced[1])
-                time = min(edge, time + window)
+                time = self._reach(time, min(edge, time + window))
                 count = self._prepare(time)
                 self._run_window(time)
                 if not self.is_compiled and not self.has_ended_early:
@@ -130,6 +133,9 @@ class KernelDriver:
             elif code == layout.ROWS_FULL:
                 self._take_rows()
             elif code == layout.QUEUE_FULL:
+                if self._waiting_numbers() > WAITING_NUMBERS // 2:
+                    self.has_no_place = True
+                    return
                 self._grow_queues()
             elif code == layout.NO_MESSAGES:
                 if self.program.lossy and self._messages >= MOST_MESSAGES:
@@ -157,6 +163,12 @@ class KernelDriver:
             self._thread = ThreadPoolExecutor(max_workers=1)
 
     # What the kernel gets.
+
+    def _reach(self, start: int, until: int) -> int:
+        """The end of a window that has not many more occurrences than are prepared at a time, however dense they are."""
+        for _, occurrences in self.program.arrivals:
+            until = occurrences.reach(start, until, 2 * _OCCURRENCES)
+        return until
 
     def _prepare(self, until: int) -> int:
         """Put the occurrences up to a time into memory, in order; the result is their number."""
@@ -194,6 +206,12 @@ class KernelDriver:
         else:
             self.memory += [0] * size
         return place
+
+    def _waiting_numbers(self) -> int:
+        """How many numbers the queues of activations take."""
+        words = self.memory
+        captures = sum(int(words[each + layout.CAPTURES_END] - words[each + layout.CAPTURES]) for each in self.program.queues)
+        return int(words[layout.PLACES]) * (captures + layout.QUEUE_CAPTURES * len(self.program.queues))
 
     def _grow_queues(self) -> None:
         """Give all processes twice as many places for activations."""

@@ -97,6 +97,11 @@ class SimulationRun:
             message = f"at {at}, more than {self.driver.multiplied:,} messages are in transit or wait; the run ends there"
             self.context.notes.error("SIM006", message, None)
             return
+        if self.driver.has_no_place:
+            name = max(self.program.records, key=self.driver.pending)
+            message = f"at {at}, {self.driver.pending(name):,} activations of {name!r} wait; the run ends there"
+            self.context.notes.error("SIM007", message, self.context.system.processes[name])
+            return
         name = next(name for name, record in self.program.records.items() if record == self.driver.endless)
         message = f"at {at}, {name!r} executes activities forever without taking time; the run ends there"
         self.context.notes.error("SIM003", message, self.context.system.processes[name])
