@@ -26,7 +26,9 @@ def forget_working_folder() -> None:
 
 def own_command(words: Sequence[str]) -> list[str]:
     """The command `amuros` with some words, as a process that imports from the same folders as this one."""
-    program = f"import sys; sys.path[:] = {sys.path!r}; sys.argv[0] = 'amuros'; from amalthea_uros.cli.process import run; run()"
+    program = (
+        f"import sys; sys.path[:] = {sys.path!r}; sys.argv[0] = 'amuros'; from amalthea_uros.cli.process import run; run()"
+    )
     return [sys.executable, "-P", "-c", program, *words]
 
 

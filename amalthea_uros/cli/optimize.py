@@ -11,7 +11,7 @@ import click
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.options import paths_argument, seed_option, settings_options, workers_options
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_line, show_result
-from amalthea_uros.cli.parameters import OUTPUT_FILE, Parsed
+from amalthea_uros.cli.parameters import OUTPUT_FILE, POSITIVE, Parsed
 from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, parse_sweep
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary
 from amalthea_uros.design.optimize.goals import GOALS
@@ -81,7 +81,7 @@ def _vary(text: str) -> tuple[Vary, ...]:
 )
 @click.option(
     "--time-limit",
-    type=click.FloatRange(min=0, min_open=True),
+    type=POSITIVE,
     metavar="SECONDS",
     help="End with the best design so far after this time; what is found then depends on the computer.",
 )

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import click
 
-from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, Parsed, assignment
+from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, POSITIVE, Parsed, assignment
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, SWEEP_EXAMPLE, parse_change, parse_sweep
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.perf.activities import Communication
@@ -135,7 +135,7 @@ _SETTINGS = all_of(
         ),
         click.option(
             "--scale",
-            type=click.FloatRange(min=0, min_open=True),
+            type=POSITIVE,
             default=1.0,
             show_default=True,
             help="Factor by which all execution times are multiplied.",

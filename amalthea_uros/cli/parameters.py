@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -36,6 +37,23 @@ OUTPUT_FILE = FileType(STANDARD_OUTPUT, dir_okay=False)
 def output_path(text: str) -> Path:
     """A file to write that is given as part of an option."""
     return STANDARD_OUTPUT if text == "-" else Path(text)
+
+
+class PositiveNumber(click.FloatRange):
+    """A number above zero; click itself takes `nan` and `inf` for numbers."""
+
+    def __init__(self) -> None:
+        super().__init__(min=0, min_open=True)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Parse one value."""
+        found = super().convert(value, param, ctx)
+        if not isfinite(found):
+            self.fail(f"{value!r} is not a finite number", param, ctx)
+        return found
+
+
+POSITIVE = PositiveNumber()
 
 
 class Parsed(click.ParamType[T]):

@@ -64,7 +64,7 @@ def _code() -> int:
 
 
 def _prepare() -> None:
-    """Trust no code of the working folder; have signals end the process, and let the standard streams take every text; collect garbage rarely."""
+    """Have signals end the process, and let the standard streams take every text; import nothing foreign; collect garbage rarely."""
     forget_working_folder()
     gc.set_threshold(GARBAGE_THRESHOLD)
     for name in _SIGNALS:

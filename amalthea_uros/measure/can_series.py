@@ -25,6 +25,11 @@ from amalthea_uros.measure.pairing import Pairs, paired_by_number, paired_in_ord
 from amalthea_uros.measure.series import Counts, Series, TimeStatistics, merged, statistics_or_none
 from amalthea_uros.timing.basics.quantities import JobMetric
 
+#: Times of more than 50 days that a controller reports are none, like those that are not numbers; their squares are still exact.
+_LONGEST = 2**62
+#: Only these may be negative.
+_SIGNED = (JobMetric.SLACK_TIME, JobMetric.LATENESS)
+
 
 def markers_of(item: Measurable) -> tuple[Marker, ...]:
     """The markers that an object needs, in a fixed order."""
@@ -140,15 +145,15 @@ def _chain_series(item: MarkerChain, found: MarkerOccurrences, numbers: Numbers 
 
 
 def _reported_values(item: ReportedValue, found: MarkerOccurrences, duplicated: int) -> MeasuredObject:
-    values, is_known = _decoded(item.value, found)
+    values, is_known = _decoded(item.value, found, -_LONGEST if item.quantity in _SIGNED else 0)
     counts = Counts(duplicated=duplicated)
     method = f"values that {item.marker} reports"
     series = _series(item, item.quantity, values, found.time[is_known], counts, method)
     return MeasuredObject((series,), int(np.count_nonzero(~is_known)))
 
 
-def _decoded(decode: Decoder, found: MarkerOccurrences) -> tuple[Numbers, Flags]:
-    values = [decode(data) for data in found.data]
+def _decoded(decode: Decoder, found: MarkerOccurrences, least: int) -> tuple[Numbers, Flags]:
+    values = [value if value is not None and least <= value <= _LONGEST else None for value in map(decode, found.data)]
     is_known = np.array([value is not None for value in values], bool)
     return np.array([round(value) for value in values if value is not None], np.int64), is_known
 
@@ -175,6 +180,9 @@ def _part(item: ReportedStatistics, data: bytes) -> TimeStatistics | None:
     count = Fraction(1) if item.count is None else item.count(data)
     deviation = None if item.deviation is None else item.deviation(data)
     if low is None or mean is None or high is None or not count or not low <= mean <= high:
+        return None
+    least = -_LONGEST if item.quantity in _SIGNED else 0
+    if not (least <= low and high <= _LONGEST and 0 < count <= _LONGEST and 0 <= (deviation or 0) <= _LONGEST):
         return None
     variance = None if deviation is None or item.count is None else deviation**2
     return TimeStatistics(count=int(count), min=round(low), mean=mean, max=round(high), variance=variance)

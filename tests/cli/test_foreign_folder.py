@@ -13,7 +13,20 @@ from amalthea_uros._internal import machine_code, own_processes
 from amalthea_uros.cli.main import COMMANDS
 
 SAMPLES = ROOT / "samples"
-LIBRARIES = ("_numba", "click", "dask", "jinja2", "lxml", "networkx", "numba", "numpy", "pydantic", "pygls", "tree_sitter", "yaml")
+LIBRARIES = (
+    "_numba",
+    "click",
+    "dask",
+    "jinja2",
+    "lxml",
+    "networkx",
+    "numba",
+    "numpy",
+    "pydantic",
+    "pygls",
+    "tree_sitter",
+    "yaml",
+)
 INPUTS = {
     "a.amxmi": "executor.amxmi",
     "app.yaml": "bodas-test-measured.yaml",
@@ -87,7 +100,9 @@ def test_every_command_is_called():
 @pytest.mark.parametrize("command", CALLS)
 def test_no_command_executes_code_of_the_working_folder(command, folder, program):
     words = [*program, command, *CALLS[command].split()]
-    run = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    run = subprocess.run(
+        words, cwd=folder, env=environment(), capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL
+    )
     assert executed(folder) == ""
     assert "Traceback" not in run.stderr
     assert "foreign code" not in run.stdout + run.stderr
@@ -96,7 +111,9 @@ def test_no_command_executes_code_of_the_working_folder(command, folder, program
 
 def test_a_watching_command_executes_none_either(folder, program):
     words = [*program, "check", "app.yaml", "--watch"]
-    with subprocess.Popen(words, cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
+    with subprocess.Popen(
+        words, cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as run:
         lines = []
         while not any(line.startswith("watching") for line in lines):
             lines.append(run.stdout.readline())
@@ -126,7 +143,9 @@ def test_only_the_working_folder_is_forgotten(tmp_path, monkeypatch):
 
 def test_the_environment_is_as_before_once_processes_are_started(monkeypatch):
     for former in (None, "", "0"):
-        monkeypatch.setenv("PYTHONSAFEPATH", former) if former is not None else monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+        monkeypatch.setenv("PYTHONSAFEPATH", former) if former is not None else monkeypatch.delenv(
+            "PYTHONSAFEPATH", raising=False
+        )
         with own_processes.safe_start():
             assert os.environ["PYTHONSAFEPATH"] == "1"
         assert os.environ.get("PYTHONSAFEPATH") == former

@@ -1,7 +1,9 @@
 """Measuring files: logs of a CAN bus with markers, traces of events, tables of values."""
 
 import gzip
+import math
 import random
+import struct
 from fractions import Fraction
 from itertools import pairwise
 
@@ -228,6 +230,22 @@ def test_reported_values_have_the_scale_of_their_unit(tmp_path):
     found = amuros.measure(path, markers=path_of_markers)
     assert microseconds(found.series[0]) == [100, 200]
     assert "MEA003" in rules(found)
+
+
+@pytest.mark.parametrize(("quantity", "usable"), [("duration", [5]), ("lateness", [5, -3])])
+def test_reported_values_that_are_no_times_are_not_used(tmp_path, quantity, usable):
+    pytest.importorskip("cantools")
+    (tmp_path / "bus.dbc").write_text(
+        'VERSION ""\n\nNS_ :\n\nBS_:\n\nBU_: ECU\n\nBO_ 256 Debug: 4 ECU\n SG_ Time : 0|32@1- (1,0) [0|0] "us" ECU\n'
+        "SIG_VALTYPE_ 256 Time : 1;\n"
+    )
+    values = (5.0, 1e30, -1e30, math.nan, math.inf, -3.0)
+    path = log(tmp_path, *((1000 * at, f"100#{struct.pack('<f', value).hex()}") for at, value in enumerate(values)))
+    path_of_markers = markers(tmp_path, f"Task: {{value: Debug.Time, unit: us, quantity: {quantity}, kind: process}}\n")
+    found = amuros.measure(path, markers=path_of_markers, dbc=tmp_path / "bus.dbc")
+    assert microseconds(found.series[0]) == usable
+    (told,) = [finding.message for finding in found.findings if finding.rule == "MEA003"]
+    assert told.startswith(f"{len(values) - len(usable)} frames of 'Task'")
 
 
 def test_signals_of_a_dbc_file_are_values(tmp_path):

@@ -46,6 +46,38 @@ def test_messages(database):
     assert (slow.identifier, slow.senders) == (0x123, ())
 
 
+@pytest.mark.parametrize(
+    ("line", "message", "line_number", "column"),
+    [
+        # Of a gigabyte each, if they were believed.
+        ("BO_ 9 Long: 4294967295 ECU", "the message 'Long' has 4294967295 bytes; at most 1,785 are possible", 16, 13),
+        (
+            'BO_ 9 M: 4 ECU\n SG_ S : 0|2147483648@1+ (1,0) [0|0] "" X',
+            "'S' has 2147483648 bits, but the message 'M' has 4 bytes",
+            17,
+            12,
+        ),
+        (
+            'BO_ 9 M: 4 ECU\n SG_ S m1 : 32|8@1+ (1,0) [0|0] "" X',
+            "'S' begins at bit 32, but the message 'M' has 4 bytes",
+            17,
+            13,
+        ),
+        ("SG_MUL_VAL_ 292 First Which 0-1, 5-99999999;", "more than 65,536 values of their multiplexers", 16, 29),
+        (f"BO_ 9 Long: {'9' * 5000} ECU", "has 999999999999999999 bytes; at most", 16, 13),
+    ],
+    ids=["message", "signal", "place", "multiplexer", "digits"],
+)
+def test_sizes_that_cannot_be_are_refused_before_they_take_memory(tmp_path, line, message, line_number, column):
+    path = tmp_path / "bus.dbc"
+    path.write_text(TEXT.replace("SIG_VALTYPE_", f"{line}\nSIG_VALTYPE_"))
+    with pytest.raises(ReadError) as caught:
+        read_dbc(path)
+    (finding,) = caught.value.findings
+    assert message in finding.message
+    assert (finding.rule, finding.location.line, finding.location.column) == ("CAN012", line_number, column)
+
+
 def test_a_cycle_time_is_only_what_is_stated_for_the_message_itself(database):
     cycles = {name: message.cycle_time for name, message in database.messages.items()}
     assert cycles == {"Times": 20 * MS, "Slow": None, "Chosen": None, "Real": None}

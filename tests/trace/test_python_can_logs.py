@@ -176,6 +176,16 @@ def test_a_file_of_another_format_is_told(tmp_path, suffix, content):
     assert "CAN008" in rules(log)
 
 
+def test_a_packed_blf_file_of_an_unknown_method_of_compression_is_told(tmp_path):
+    write(tmp_path / "run.blf", messages())
+    packed = bytearray(gzip.compress((tmp_path / "run.blf").read_bytes()))
+    packed[2] = 7  # 8 is the only method (RFC 1952)
+    (tmp_path / "packed.blf.gz").write_bytes(packed)
+    log = open_can_log(tmp_path / "packed.blf.gz")
+    assert list(log) == []
+    assert "TRC006" in [finding.rule for finding in log.findings]
+
+
 def test_a_cut_blf_file_is_told(tmp_path):
     path = tmp_path / "run.blf"
     write(path, messages(60))

@@ -107,7 +107,10 @@ class _Pool:
     def _start(self) -> ProcessPoolExecutor:
         with safe_start():
             return ProcessPoolExecutor(
-                self._count, get_context("spawn"), initializer=_install, initargs=(self._job, _LOGGER.isEnabledFor(logging.INFO))
+                self._count,
+                get_context("spawn"),
+                initializer=_install,
+                initargs=(self._job, _LOGGER.isEnabledFor(logging.INFO)),
             )
 
     def submit(self, runs: Sequence[CampaignRun]) -> Future[list[RunOutcome]]:

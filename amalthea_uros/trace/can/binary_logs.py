@@ -108,7 +108,7 @@ class BlfLog(PythonCanLog):
             except Exception as error:  # of many kinds, which python-can does not document
                 self._report_end(error, TracePlace(number))
                 return
-        self._check_size(reader)
+            self._check_size(reader)
 
     def _is_safe(self) -> bool:
         """Whether all containers may be unpacked; reports those that are damaged."""

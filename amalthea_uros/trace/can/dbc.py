@@ -14,6 +14,7 @@ from amalthea_uros._internal.limits import MODEL_SIZE
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError
+from amalthea_uros.trace.can.dbc_sizes import wrong_size
 from amalthea_uros.trace.can.frames import EXTENDED
 from amalthea_uros.units import Time
 
@@ -117,6 +118,8 @@ def read_dbc(path: Path) -> DbcDatabase:
         text = read_bytes(path, MODEL_SIZE).decode("cp1252", "replace")
     except FileError as error:
         raise ReadError([Finding("CAN012", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
+    if (wrong := wrong_size(text)) is not None:
+        raise ReadError([_invalid(wrong.message, Location(path, wrong.line, wrong.column))])
     database = CantoolsDatabase()
     try:
         database.add_dbc_string(text)
@@ -171,7 +174,11 @@ def _not_dbc(path: Path, error: Exception) -> Finding:
     # Errors of the parser know line and column.
     line, column = (getattr(error, name, None) for name in ("line", "column"))
     place = Location(path, line, column) if isinstance(line, int) and isinstance(column, int) else Location(path)
-    return Finding("CAN012", Severity.ERROR, f"not a valid DBC file: {error}", place, "Correct it, or save it again as DBC.")
+    return _invalid(str(error), place)
+
+
+def _invalid(reason: str, place: Location) -> Finding:
+    return Finding("CAN012", Severity.ERROR, f"not a valid DBC file: {reason}", place, "Correct it, or save it again as DBC.")
 
 
 def _hint(name: str, known: Mapping[str, object]) -> str:
