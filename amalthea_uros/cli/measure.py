@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from amalthea_uros.cli.options import all_of
+from amalthea_uros.cli.options import all_of, raw_names_option
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_findings, write_outputs
 from amalthea_uros.cli.parameters import INPUT, Parsed, assignment, output_path
 from amalthea_uros.compare.measured.columns import FORM as COLUMN_FORM
@@ -131,6 +131,7 @@ def measure_options(function: Callable[..., Any]) -> Callable[..., Any]:
     type=assignment("NAME=FILE", output_path),
     help="Draw the times of an object, or another of its quantities, e.g. Task.start_to_start=period.svg; may be repeated.",
 )
+@raw_names_option
 @output_option("Measurement")
 def measure(
     trace: Path,

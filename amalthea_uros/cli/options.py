@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 import click
 
+from amalthea_uros._internal.csv_cells import RAW_NAMES
 from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, POSITIVE, Parsed, assignment
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, SWEEP_EXAMPLE, parse_change, parse_sweep
 from amalthea_uros.judge.summary import Schedulable
@@ -102,8 +103,21 @@ def sweep_option(what: str, *, required: bool = False) -> Decorator:
 
 
 def table_option(text: str) -> Decorator:
-    """The file of a table with a row for each run."""
-    return click.option("--table", type=OUTPUT_FILE, metavar="FILE", help=text)
+    """The file of a table with a row for each run, and how names are written in it."""
+    return all_of((click.option("--table", type=OUTPUT_FILE, metavar="FILE", help=text), raw_names_option))
+
+
+def _write_raw_names(_context: click.Context, _parameter: click.Parameter, value: bool) -> None:
+    RAW_NAMES.set(value)
+
+
+raw_names_option = click.option(
+    "--raw-names",
+    is_flag=True,
+    expose_value=False,
+    callback=_write_raw_names,
+    help="Write names to .csv files as they are, also those that a spreadsheet would execute as a formula, such as =1+1.",
+)
 
 
 def workers_options(things: str, default: str = "one for each core") -> Decorator:

@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
+from amalthea_uros._internal.csv_cells import original_text, safe_cell
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.files import TracePlace, opened_text
 from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, NumberedTable, Row, note_of, numbered_table
@@ -87,12 +88,21 @@ class CsvReader(LineReader):
             )
             return None
         self._last = time
-        return time, pattern, job, instance, note_of(note_field, self._patterns[pattern][0], self._index, note_field), line
+        return (
+            time,
+            pattern,
+            job,
+            instance,
+            note_of(note_field, self._patterns[pattern][0], self._index, original_text(note_field)),
+            line,
+        )
 
     def _new_pattern(self, event: str, source_kind: str, source: str, target_kind: str, target: str) -> int:
         kind, of_source, of_target = EVENT_NAMES[event], _KINDS[source_kind], _KINDS[target_kind]
         number = self._numbers[event, source_kind, source, target_kind, target] = len(self._patterns)
-        self._patterns.append((kind, self._index.index(of_source, source), self._index.index(of_target, target)))
+        self._patterns.append(
+            (kind, self._index.index(of_source, original_text(source)), self._index.index(of_target, original_text(target)))
+        )
         return number
 
 
@@ -113,7 +123,7 @@ class CsvEncoder(Encoder):
     def encode(self, table: EventTable) -> bytes:
         """The lines of some events."""
         fields = self._fields
-        fields += [f"{entity.kind},{_quoted(entity.name)}" for entity in self._entities[len(fields) :]]
+        fields += [f"{entity.kind},{_quoted(safe_cell(entity.name))}" for entity in self._entities[len(fields) :]]
         rows = zip(
             table.time.tolist(),
             [_NAMES[kind] for kind in table.kind.tolist()],
@@ -121,7 +131,7 @@ class CsvEncoder(Encoder):
             table.source_instance.tolist(),
             [fields[target] for target in table.target.tolist()],
             table.target_instance.tolist(),
-            ["" if note is None else _quoted(note) if isinstance(note, str) else note for note in table.notes()],
+            ["" if note is None else _quoted(safe_cell(note)) if isinstance(note, str) else note for note in table.notes()],
             strict=True,
         )
         return "".join(

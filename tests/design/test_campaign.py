@@ -246,6 +246,12 @@ def test_a_table_without_rows(suffix, tmp_path):
     assert (tmp_path / f"t.{suffix}").exists()
 
 
+def test_an_interrupted_campaign_without_a_result_keeps_the_former_table(tmp_path):
+    (tmp_path / "t.csv").write_text("run,seed\n1,1\n")
+    write_table(tmp_path / "t.csv", [])
+    assert (tmp_path / "t.csv").read_text() == "run,seed\n1,1\n"
+
+
 def test_a_table_that_cannot_be_written(tmp_path, monkeypatch):
     with pytest.raises(InvalidArgumentError, match=r"expected one of \.csv, \.json, \.parquet"):
         table_format(tmp_path / "t.xlsx")

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from amalthea_uros._internal.csv_cells import original_text
 from amalthea_uros.compare.measured.columns import LARGEST, UNITS
 from amalthea_uros.compare.measured.records import Record, read_records
 from amalthea_uros.compare.measured.table_layout import TimesColumn
@@ -125,7 +126,7 @@ class _Table:
         text = fields[known.place] if known is not None else default
         if not text:
             raise ValueError(column)
-        return text
+        return original_text(text)
 
     def _times(self, fields: list[str]) -> tuple[int | None, int]:
         """When the value was complete, if that is known, and the value."""

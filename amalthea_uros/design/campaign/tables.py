@@ -9,7 +9,8 @@ from io import StringIO
 from pathlib import Path
 from typing import TypeAlias
 
-from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, write_bytes
+from amalthea_uros._internal.csv_cells import safe_cell
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_file, write_bytes
 from amalthea_uros.design.campaign.run import Record, Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.xmi.emf.files import not_writable
@@ -39,11 +40,15 @@ def table_format(path: Path) -> TableFormat:
 def write_table(path: Path, rows: Sequence[Record]) -> None:
     """Write a table whole or not at all; a column for each name in any of the rows.
 
+    Without rows, as after an interruption before the first one, a former table stays what it is.
+
     Raises
     ------
     InvalidArgumentError : as for `table_format`.
     WriteError : the file cannot be written.
     """
+    if not rows and is_file(path):
+        return
     columns = list(dict.fromkeys(name for row in rows for name in row))
     try:
         write_bytes(path, table_format(path)(columns, rows))
@@ -53,10 +58,14 @@ def write_table(path: Path, rows: Sequence[Record]) -> None:
 
 def _csv(columns: Sequence[str], rows: Sequence[Record]) -> bytes:
     stream = StringIO(newline="")
-    writer = csv.DictWriter(stream, columns, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(map(safe_cell, columns))
+    writer.writerows([_cell(row.get(column)) for column in columns] for row in rows)
     return stream.getvalue().encode()
+
+
+def _cell(value: Value) -> Value:
+    return safe_cell(value) if isinstance(value, str) else value
 
 
 def _json(columns: Sequence[str], rows: Sequence[Record]) -> bytes:

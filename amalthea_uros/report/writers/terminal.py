@@ -102,8 +102,8 @@ class Terminal:
     def line(self, text: str = "") -> None:
         """Write one line; of what is not ours in it, hidden characters are shown as escapes."""
         text = text.rstrip()
-        # No CI system reads the colours of a terminal.
-        self.stream.write(("\x1b[".join(map(visible, text.split(_STYLE))) if self.coloured else output_line(text)) + "\n")
+        # Colours may be wanted in the log of a CI system, too, and a line may begin with text that has none.
+        self.stream.write(("\x1b[".join(map(output_line, text.split(_STYLE))) if self.coloured else output_line(text)) + "\n")
 
     def style(self, text: str, code: str) -> str:
         """The text in an ANSI style ("1" bold, "2" dim, "31" red ...), if colours are on."""
