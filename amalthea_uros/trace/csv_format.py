@@ -88,21 +88,16 @@ class CsvReader(LineReader):
             )
             return None
         self._last = time
-        return (
-            time,
-            pattern,
-            job,
-            instance,
-            note_of(note_field, self._patterns[pattern][0], self._index, original_text(note_field)),
-            line,
-        )
+        note = note_of(note_field, self._patterns[pattern][0], self._index, original_text(note_field))
+        return time, pattern, job, instance, note, line
 
     def _new_pattern(self, event: str, source_kind: str, source: str, target_kind: str, target: str) -> int:
         kind, of_source, of_target = EVENT_NAMES[event], _KINDS[source_kind], _KINDS[target_kind]
         number = self._numbers[event, source_kind, source, target_kind, target] = len(self._patterns)
-        self._patterns.append(
-            (kind, self._index.index(of_source, original_text(source)), self._index.index(of_target, original_text(target)))
+        first, second = (
+            self._index.index(*end) for end in ((of_source, original_text(source)), (of_target, original_text(target)))
         )
+        self._patterns.append((kind, first, second))
         return number
 
 
