@@ -26,11 +26,11 @@ class Description(DescriptionSection):
     """Name of the application."""
     hardware: HardwareSection
     """The controller."""
-    os: OsSection = Field(default_factory=OsSection)
+    os: OsSection = Field(default_factory=OsSection.model_construct)
     """The operating system."""
-    middleware: Middleware = Field(default_factory=Middleware)
+    middleware: Middleware = Field(default_factory=Middleware.model_construct)
     """The generic micro-ROS model."""
-    application: Application = Field(default_factory=Application)
+    application: Application = Field(default_factory=Application.model_construct)
     """The micro-ROS application."""
     tasks: list[TaskSection] = Field(default_factory=list)
     """Tasks of the controller that are not part of the micro-ROS application."""

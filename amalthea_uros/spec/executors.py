@@ -36,7 +36,7 @@ class ExecutorCost(Shorthand):
     """Execution time of every activation."""
     per_ready_callback: ExecutionTimeSection | None = None
     """Additional execution time per ready callback."""
-    per_message: MessageCost = Field(default_factory=MessageCost)
+    per_message: MessageCost = Field(default_factory=MessageCost.model_construct)
     """Additional execution time per message taken."""
     per_timer: ExecutionTimeSection | None = None
     """Additional execution time per timer, in every activation."""
@@ -125,7 +125,7 @@ class ExecutorSection(DescriptionSection):
     """Number of handles that `rclc_executor_init` gets; default: as many as it has."""
     stack: Size | None = None
     """Stack of its thread or task."""
-    execution_time: ExecutorCost = Field(default_factory=ExecutorCost)
+    execution_time: ExecutorCost = Field(default_factory=ExecutorCost.model_construct)
     """Execution time of an activation."""
     callbacks: Annotated[Literal["own-task", "in-executor"], _PLACES] = "own-task"
     """Where callbacks without `runs_in` run: each in a separate task, or one after the other in the executor; default: `in-executor`
@@ -134,5 +134,5 @@ class ExecutorSection(DescriptionSection):
     """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
     semantics: Annotated[Literal["ROS", "LET"], _SEMANTICS] = "ROS"
     """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
-    trigger: TriggerSection = Field(default_factory=TriggerSection)
+    trigger: TriggerSection = Field(default_factory=TriggerSection.model_construct)
     """Condition under which callbacks in the executor run."""

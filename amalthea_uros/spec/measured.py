@@ -53,9 +53,9 @@ class MeasuredProfile(DescriptionSection):
     """What was measured, as the end of a sentence: '30,000 round trips of ...'."""
     basis: Annotated[Literal["fitted", "derived", "measured"], _BASES]
     """How the times follow from that."""
-    agent: Agent = Field(default_factory=Agent)
+    agent: Agent = Field(default_factory=Agent.model_construct)
     """The times in the agent."""
-    transport: TransportSection = Field(default_factory=TransportSection)
+    transport: TransportSection = Field(default_factory=TransportSection.model_construct)
     """The transport, with its driver."""
     sources: dict[Name, str] = Field(default_factory=dict)
     """How single figures follow, by their keys."""

@@ -54,7 +54,7 @@ class InitialisationSection(DescriptionSection):
     response_time: ResponseTime | None = None
     """Response time of the agent, from a request to its response as the client sees it; if omitted, only the minimum that the wire
     needs is known."""
-    request_sizes: RequestSizes = Field(default_factory=RequestSizes)
+    request_sizes: RequestSizes = Field(default_factory=RequestSizes.model_construct)
     """Sizes of the requests; default: unknown."""
 
 
@@ -214,25 +214,25 @@ class Middleware(DescriptionSection):
     """Scheduling policy of the operating system."""
     task_periods: list[Duration] = Field(default_factory=list)
     """Available task periods; if omitted, any period is available."""
-    executor: ExecutorSection = Field(default_factory=ExecutorSection)
+    executor: ExecutorSection = Field(default_factory=ExecutorSection.model_construct)
     """The executor, if there is only one."""
     executors: list[ExecutorSection] = Field(default_factory=list)
     """The executors, if there are several; the first one serves callbacks that name no other."""
     multithread: bool = False
     """Whether the middleware is built for several threads: then they share its session, one at a time."""
-    publish: MessageCost = Field(default_factory=MessageCost)
+    publish: MessageCost = Field(default_factory=MessageCost.model_construct)
     """Execution time of publishing a message, added to that of the callback."""
-    reliable: Reliable = Field(default_factory=Reliable)
+    reliable: Reliable = Field(default_factory=Reliable.model_construct)
     """How reliable messages are sent."""
     tasks: list[MiddlewareTask] = Field(default_factory=list)
     """Tasks or threads of the middleware."""
-    transport: TransportSection = Field(default_factory=TransportSection)
+    transport: TransportSection = Field(default_factory=TransportSection.model_construct)
     """The transport to the agent."""
-    agent: Agent = Field(default_factory=Agent)
+    agent: Agent = Field(default_factory=Agent.model_construct)
     """The agent, or the router of the middleware."""
-    initialisation: InitialisationSection = Field(default_factory=InitialisationSection)
+    initialisation: InitialisationSection = Field(default_factory=InitialisationSection.model_construct)
     """Creation of the entities."""
-    limits: PoolSizes = Field(default_factory=PoolSizes)
+    limits: PoolSizes = Field(default_factory=PoolSizes.model_construct)
     """Static pools."""
 
     @property

@@ -57,7 +57,7 @@ class OsOverhead(DescriptionSection):
     """Time per job of a task, after its last function."""
     activations_run_in: Annotated[Literal["task", "interrupt"], _LEVELS] = "task"
     """Where the work for the activation of a task is executed."""
-    isr: OverheadSection = Field(default_factory=OverheadSection)
+    isr: OverheadSection = Field(default_factory=OverheadSection.model_construct)
     """Time per execution of an interrupt service routine."""
 
 
@@ -111,7 +111,7 @@ class OsSection(DescriptionSection):
     """Time after which ready tasks of the same priority take turns; `0`: they do not; default: that of the operating system."""
     sleep_ticks: SleepTicks | None = None
     """How exactly a task sleeps; default: as the operating system does; without a tick, exactly as long as asked."""
-    overhead: OsOverhead = Field(default_factory=OsOverhead)
+    overhead: OsOverhead = Field(default_factory=OsOverhead.model_construct)
     """What it costs to activate and end tasks and interrupt service routines; default: nothing."""
 
     @property

@@ -43,9 +43,9 @@ class Platform(DescriptionSection):
     """Name by which execution times refer to it."""
     hardware: HardwareSection
     """The hardware itself."""
-    os: OsSection = Field(default_factory=OsSection)
+    os: OsSection = Field(default_factory=OsSection.model_construct)
     """The operating system that is usual on it; keys of the application override it."""
-    middleware: Middleware = Field(default_factory=Middleware)
+    middleware: Middleware = Field(default_factory=Middleware.model_construct)
     """The generic micro-ROS model as ported to it; keys of the application override it, key by key."""
     source: str | None = None
     """Source of the figures."""
@@ -62,9 +62,9 @@ class Rtos(DescriptionSection):
     """Name by which `os.rtos` refers to it."""
     title: Name
     """Its full name."""
-    os: OsSection = Field(default_factory=OsSection)
+    os: OsSection = Field(default_factory=OsSection.model_construct)
     """Its properties; keys of the platform and of the application override them."""
-    middleware: Middleware = Field(default_factory=Middleware)
+    middleware: Middleware = Field(default_factory=Middleware.model_construct)
     """The generic micro-ROS model as ported to it; keys of the platform and of the application override it, key by key."""
     sources: dict[Name, str] = Field(default_factory=dict)
     """Sources of the figures, by their keys."""

@@ -76,9 +76,9 @@ class ProfileData(DescriptionSection):
     """Where the figures come from."""
     sources: dict[Name, str] = Field(default_factory=dict)
     """Sources of single figures, by their keys."""
-    waiting: WaitingData = Field(default_factory=WaitingData)
+    waiting: WaitingData = Field(default_factory=WaitingData.model_construct)
     """How an executor waits."""
-    sending: SendingData = Field(default_factory=SendingData)
+    sending: SendingData = Field(default_factory=SendingData.model_construct)
     """How messages are sent."""
     threads: list[ThreadData] = Field(default_factory=list)
     """Its threads."""

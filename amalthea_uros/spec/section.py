@@ -19,9 +19,7 @@ class DescriptionSection(BaseModel):
     """A mapping of the file."""
 
     # Only the sections that something is validated by are built, with those in them, when that happens first.
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, use_attribute_docstrings=True, protected_namespaces=(), defer_build=True
-    )
+    model_config = ConfigDict(extra="forbid", frozen=True, protected_namespaces=(), defer_build=True)
 
     _where: tuple[MappingNode, YamlText] | None = PrivateAttr(None)
     #: The section that gives the keys that this one does not state; see `spec.merging`.
@@ -41,6 +39,16 @@ class DescriptionSection(BaseModel):
         if value is None:
             raise PydanticCustomError("empty", "no value")
         return value
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        from amalthea_uros.spec.docstrings import field_docstrings
+
+        reference = handler(core_schema)
+        properties = handler.resolve_ref_schema(reference)["properties"]
+        for key, text in field_docstrings(cls).items():
+            properties[key].setdefault("description", text)
+        return reference
 
     def location(self, key: str | None = None, index: int | None = None) -> Location | None:
         """Location of the section, of the value of a key, or of an item of that value; None if it was not read from a file.
@@ -106,7 +114,7 @@ class Shorthand(DescriptionSection):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        reference = handler(core_schema)
+        reference = super().__get_pydantic_json_schema__(core_schema, handler)
         schema = handler.resolve_ref_schema(reference)
         if "anyOf" not in schema:
             whole = dict(schema)

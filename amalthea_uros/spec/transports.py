@@ -141,9 +141,9 @@ class Driver(DescriptionSection):
     """How a call reads."""
     tick: Duration | None = None
     """Tick in which its calls wait; default: that of the operating system."""
-    write_cost: MessageCost = Field(default_factory=MessageCost)
+    write_cost: MessageCost = Field(default_factory=MessageCost.model_construct)
     """Execution time of a write call."""
-    read_cost: MessageCost = Field(default_factory=MessageCost)
+    read_cost: MessageCost = Field(default_factory=MessageCost.model_construct)
     """Execution time of a read call."""
     buffer: SizeOrNothing | None = None
     """Size of its receive buffer; what arrives when it is full is lost."""
@@ -156,7 +156,7 @@ class Serial(DescriptionSection):
     """Symbols per second; each is a bit."""
     bits_per_byte: Annotated[int, Field(strict=True, ge=8, le=13)] = 10
     """Bits on the line per byte, with start, stop and parity bits: 10 for 8N1."""
-    driver: Driver = Field(default_factory=Driver)
+    driver: Driver = Field(default_factory=Driver.model_construct)
     """How the driver moves bytes."""
     interrupt: Interrupt | None = None
     """The interrupt for each received piece; if omitted, its cost is part of other execution times."""
@@ -169,7 +169,7 @@ class UsbCdc(DescriptionSection):
     """Bits per second of the bus; default: full speed."""
     latency: LatencySection | None = None
     """Time that the host takes until it polls and passes a packet on, besides its transmission; default: unknown."""
-    driver: Driver = Field(default_factory=Driver)
+    driver: Driver = Field(default_factory=Driver.model_construct)
     """How the driver moves bytes."""
     interrupt: Interrupt | None = None
     """The interrupt for each received packet."""
@@ -184,7 +184,7 @@ class NetworkSection(DescriptionSection):
     """Time in the network besides the transmission on that link: switches, access points, the stack of the host; default: unknown."""
     overhead: SizeOrNothing | None = None
     """Bytes per packet that are not content: headers of the network, preamble, gap; default: those of Ethernet."""
-    driver: Driver = Field(default_factory=Driver)
+    driver: Driver = Field(default_factory=Driver.model_construct)
     """How the driver moves packets."""
     interrupt: Interrupt | None = None
     """The interrupt for each received packet."""
@@ -206,7 +206,7 @@ class CustomTransport(DescriptionSection):
     """Transfer times by the length of messages; longer ones than in the last row cannot be sent."""
     framing: bool = False
     """Whether messages are framed as on serial lines."""
-    driver: Driver = Field(default_factory=Driver)
+    driver: Driver = Field(default_factory=Driver.model_construct)
     """How the driver moves bytes."""
     interrupt: Interrupt | None = None
     """The interrupt for each received message."""

@@ -6,6 +6,7 @@ from support import ROOT
 from amalthea_uros import describe
 from amalthea_uros._internal.resources import MEASURED, known_measured
 from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.docstrings import field_docstrings
 from amalthea_uros.spec.measured import MeasuredProfile
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.platforms import complete
@@ -161,5 +162,5 @@ class TestKnownProfile:
 
     def test_it_is_documented(self, name):
         for section in (Agent, TransportSection):
-            assert f"`{name}`" in section.model_fields["profile"].description
+            assert f"`{name}`" in field_docstrings(section)["profile"]
         assert f"`{name}`" in (ROOT / "docs" / "boards.md").read_text()

@@ -7,6 +7,7 @@ from amalthea_uros import build
 from amalthea_uros._internal.resources import PLATFORMS, known_platforms
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.docstrings import field_docstrings
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.platforms import Platform, complete
 from amalthea_uros.spec.read import read_section
@@ -23,7 +24,7 @@ class TestPlatform:
         assert all(clock.frequency for clock in system.hardware.clocks)
 
     def test_it_is_documented(self, name):
-        assert f"`{name}`" in HardwareSection.model_fields["platform"].description
+        assert f"`{name}`" in field_docstrings(HardwareSection)["platform"]
         assert f"`{name}`" in (ROOT / "docs" / "app-yaml.md").read_text()
 
 

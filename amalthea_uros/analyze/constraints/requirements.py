@@ -140,7 +140,7 @@ def _metric(holders: Sequence[Holder], metric: TimeMetric) -> Metric | None:
     name = _METRICS.get(metric)
     if name is None or not holders or not all(name in holder.metrics for holder in holders):
         return None
-    return metrics.merged([holder.metrics for holder in holders])[name]
+    return metrics.merged([{name: holder.metrics[name]} for holder in holders])[name]
 
 
 def _least(holders: Sequence[Holder], metric: TimeMetric) -> Time | None:

@@ -10,6 +10,7 @@ from operator import mul
 from typing import Any, TypeVar
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.lazy_mapping import LazyMapping
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.phases.cases import PhaseCases
@@ -26,6 +27,9 @@ from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
+
+#: The metrics of more phases are merged at once, because the schedules of all of them would be kept.
+_MOST_KEPT = 100
 
 T = TypeVar("T")
 R = TypeVar("R", ProcessResult, CallbackResult)
@@ -87,7 +91,10 @@ def _process(results: Sequence[ProcessResult], counts: Sequence[int]) -> Process
 def _job_results(results: Sequence[R], counts: Sequence[int]) -> R:
     """The result with the worst response time, and the metrics of all phases."""
     worst = max(results, key=_badness)
-    worst = replace(worst, metrics=metrics.merged([result.metrics for result in results], counts))
+    found = LazyMapping(lambda: metrics.merged([result.metrics for result in results], counts))
+    if len(results) > _MOST_KEPT:
+        len(found)
+    worst = replace(worst, metrics=found)
     return worst if worst.response is None else replace(worst, response=_response(worst.response, results, counts))
 
 

@@ -27,7 +27,7 @@ from amalthea_uros.uros.executors.iterations import has_one_message_per_iteratio
 #: Iterations are executed one after the other, however many are due.
 _UNLIMITED = 1_000_000
 #: Of an operating system whose tick is known, and nothing else: a sleep can end a tick before or after.
-_INEXACT = SleepTicks(early=1, late=1)
+_INEXACT = SleepTicks.model_construct(early=1, late=1)
 
 
 def add_looping_executor(
