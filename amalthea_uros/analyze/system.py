@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
@@ -36,6 +36,18 @@ from amalthea_uros.timing.basics.settings import Settings
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
     """The analysis of a system."""
+    found = analyze_while(system, settings, lambda _analysis: True)
+    assert found is not None
+    return found
+
+
+def analyze_while(system: System, settings: Settings | None, is_wanted: Callable[[Analysis], bool]) -> Analysis | None:
+    """The analysis of a system; None as soon as what is found for some unknown phases is not wanted.
+
+    Parameters
+    ----------
+    is_wanted : of the analysis for some phases, which are possible; it is not asked if there are none
+    """
     if not isinstance(system, System):
         raise TypeError(
             f"expected a System, not {type(system).__name__}; extract(model).system is the system of an AMALTHEA model, "
@@ -48,7 +60,9 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     unknown = unknown_phases(system)
     executors, crossing = evaluate_executors_and_messages(solution)
     note_executors(executors, solution)
-    every = _of_all_phases(solution, unknown, executors, crossing)
+    every, is_complete = _of_all_phases(solution, unknown, executors, crossing, is_wanted)
+    if not is_complete:
+        return None
     found = every or _analysis(solution, JobBudget(), executors, crossing)
     phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
     # Executors and messages are evaluated once, for all phases; if there are cases, nothing else is based on the solution for these.
@@ -61,17 +75,22 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
 
 
 def _of_all_phases(
-    solution: Solution, unknown: Sequence[ExternalInput], executors: Results[ExecutorResult], crossing: Results[ChainResult]
-) -> Analysis | None:
-    """The analysis over all combinations of unknown phases; None if there are too many."""
+    solution: Solution,
+    unknown: Sequence[ExternalInput],
+    executors: Results[ExecutorResult],
+    crossing: Results[ChainResult],
+    is_wanted: Callable[[Analysis], bool],
+) -> tuple[Analysis | None, bool]:
+    """The analysis over all combinations of unknown phases, None if there are too many; and whether all that was found is wanted."""
     cases, budget = PhaseCases.of(solution, unknown), JobBudget()
     if cases is None:
-        return None
-    return merged(
-        {number: _analysis(each, budget, executors, crossing) for number, each in cases.solutions(cases.of_everything())},
-        cases,
-        solution,
-    )
+        return None, True
+    analyses: dict[int, Analysis] = {}
+    for number, each in cases.solutions(cases.of_everything()):
+        analyses[number] = _analysis(each, budget, executors, crossing)
+        if not is_wanted(analyses[number]):
+            return None, False
+    return merged(analyses, cases, solution), True
 
 
 def _analysis(

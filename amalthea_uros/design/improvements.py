@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import chain as joined
 from itertools import islice, zip_longest
 
@@ -13,7 +14,7 @@ from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureU
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import CauseKind, ChainExplanation
-from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.analyze.system import analyze_while
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import Configuration
@@ -249,14 +250,22 @@ def improvements_of(analysis: Analysis, explanation: ChainExplanation, offered: 
     found, tried = [], 0
     for candidate, changed in islice(applied, most):
         try:
-            after = analyze_system(*changed)
+            after = analyze_while(*changed, partial(_is_shorter, chain, quantity, _latency(analysis, chain, quantity)))
         except InvalidArgumentError:
             continue
         tried += 1
+        if after is None:
+            continue
         differences = describe(*present, candidate.changes)
         found.append(_improvement(candidate, differences, chain, quantity, analysis, after))
     ranked = sorted(filter(None, found), key=lambda each: (each.after, not each.is_safe))
     return Improvements(chain=chain, quantity=quantity, found=tuple(ranked), tried=tried, untried=max(0, len(applied) - most))
+
+
+def _is_shorter(chain: str, quantity: LatencyQuantity, before: Time | None, for_a_phase: Analysis) -> bool:
+    """Whether a maximum is shorter for a phase of a changed system; if not, it is not over all phases either."""
+    now = _latency(for_a_phase, chain, quantity)
+    return now is not None and (before is None or now < before)
 
 
 def check_explained(quantity: object) -> None:
