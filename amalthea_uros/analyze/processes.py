@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from functools import partial
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros._internal.lazy_mapping import LazyMapping
 from amalthea_uros.analyze.loads import without_doubtful_overload
 from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
 from amalthea_uros.analyze.response_times.propagation import activated_with
@@ -39,7 +37,7 @@ def process_results(solution: Solution, executors: Results[ExecutorResult]) -> I
     for name in system.processes:
         found = _with_order(_process(name, solution, by_task.get(name)), solution)
         if name not in by_task:
-            yield replace(found, metrics=LazyMapping(partial(metrics.of, found)))
+            yield replace(found, metrics=metrics.lazily(found))
             continue
         known = metrics.of(found)
         kept = {kind: known[kind] for kind in METRICS_OF_ITERATIONS if kind in known}

@@ -36,9 +36,9 @@ from amalthea_uros.timing.basics.settings import Settings
 
 def analyze_system(system: System, settings: Settings | None = None) -> Analysis:
     """The analysis of a system."""
-    found = analyze_while(system, settings, lambda _analysis: True)
-    assert found is not None
-    return found
+    analysis = analyze_while(system, settings, lambda _analysis: True)
+    assert analysis is not None
+    return analysis
 
 
 def analyze_while(system: System, settings: Settings | None, is_wanted: Callable[[Analysis], bool]) -> Analysis | None:

@@ -47,10 +47,10 @@ class PositiveNumber(click.FloatRange):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Parse one value."""
-        found = super().convert(value, param, ctx)
-        if not isfinite(found):
+        number = super().convert(value, param, ctx)
+        if not isfinite(number):
             self.fail(f"{value!r} is not a finite number", param, ctx)
-        return found
+        return number
 
 
 POSITIVE = PositiveNumber()

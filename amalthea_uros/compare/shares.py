@@ -31,10 +31,10 @@ def _number(text: str) -> Fraction:
     number, _, exponent = text.lower().strip().partition("e")
     if len(number) > _MOST_DIGITS or len(exponent) > _LONGEST_EXPONENT:
         raise ValueError("out of range")
-    found = Fraction(text.strip())
-    if abs(found) > _LARGEST:
+    share = Fraction(text.strip())
+    if abs(share) > _LARGEST:
         raise ValueError("out of range")
-    return found
+    return share
 
 
 def parse_tolerance(value: str | float | Fraction) -> Fraction:

@@ -34,9 +34,9 @@ def field_docstrings(section: type[BaseModel]) -> dict[str, str]:
 def _of_class(section: type[BaseModel]) -> dict[str, str]:
     (definition,) = ast.parse(dedent(inspect.getsource(section))).body
     assert isinstance(definition, ast.ClassDef)
-    found = {}
+    texts = {}
     for field, text in zip(definition.body, definition.body[1:], strict=False):
         match field, text:
             case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(docstring))):
-                found[name] = inspect.cleandoc(docstring)
-    return found
+                texts[name] = inspect.cleandoc(docstring)
+    return texts

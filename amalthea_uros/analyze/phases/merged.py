@@ -91,10 +91,10 @@ def _process(results: Sequence[ProcessResult], counts: Sequence[int]) -> Process
 def _job_results(results: Sequence[R], counts: Sequence[int]) -> R:
     """The result with the worst response time, and the metrics of all phases."""
     worst = max(results, key=_badness)
-    found = LazyMapping(lambda: metrics.merged([result.metrics for result in results], counts))
+    of_all_phases = LazyMapping(lambda: metrics.merged([result.metrics for result in results], counts))
     if len(results) > _MOST_KEPT:
-        len(found)
-    worst = replace(worst, metrics=found)
+        len(of_all_phases)
+    worst = replace(worst, metrics=of_all_phases)
     return worst if worst.response is None else replace(worst, response=_response(worst.response, results, counts))
 
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from amalthea_uros._internal.lazy_mapping import LazyMapping
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
 from amalthea_uros.analyze.response_times.solution import Solution
@@ -113,6 +114,10 @@ class MetricEvaluator:
         else:
             metrics = _by_schedule(process, found, self.solution.context.time_base(process.name))
         return metrics | dict(_by_deadline(process, metrics.get(JobMetric.RESPONSE_TIME)))
+
+    def lazily(self, process: ProcessResult) -> Mapping[JobMetric, Metric]:
+        """The metrics of a process, computed when somebody looks at them."""
+        return LazyMapping(lambda: self.of(process))
 
     def _waits(self, name: str) -> bool:
         """Whether a job can wait once it executes; under a priority ceiling it does not wait for a semaphore."""

@@ -23,7 +23,7 @@ _MOST_VALUES = 2**16
 
 
 class WrongSize(NamedTuple):
-    """What is wrong with a size, and where: line and column, counted from 1."""
+    """A size that cannot be: the reason, with line and column counted from 1."""
 
     message: str
     line: int
@@ -32,10 +32,10 @@ class WrongSize(NamedTuple):
 
 def wrong_size(text: str) -> WrongSize | None:
     """The first size in a DBC file that cannot be; None if there is none."""
-    found = next(_wrong(text), None)
-    if found is None:
+    first = next(_wrong(text), None)
+    if first is None:
         return None
-    message, at = found
+    message, at = first
     return WrongSize(message, text.count("\n", 0, at) + 1, at - (text.rfind("\n", 0, at) + 1) + 1)
 
 
