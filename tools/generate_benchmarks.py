@@ -84,6 +84,7 @@ def _least(samples: list[dict[str, float]]) -> str:
 #: Title of a table -> how its rows are measured.
 TABLES: dict[str, Callable[[], Rows]] = {
     "Loading and saving": _side_by_side,
+    "A first look": partial(_printed, "start.py"),
     "Building": partial(_printed, "build.py"),
     "Response times": partial(_printed, "response_times.py"),
     "Event chains": partial(_printed, "chains.py"),

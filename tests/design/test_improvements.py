@@ -8,6 +8,7 @@ import pytest
 from effort import every
 from support import ROOT
 
+from amalthea_uros.analyze import system as analyze_module
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design import improvements as improvements_module
@@ -16,6 +17,7 @@ from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.explain import explain, improvements
+from amalthea_uros.services.subject import open_system
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
@@ -152,3 +154,16 @@ def test_other_chains_that_take_longer_are_drawbacks(shorter_drive):
         ("max reduced data age of wheel-to-torque", "25.2821 ms", "25.3121 ms"),
     ]
     assert exchanged.is_safe
+
+
+def test_the_phases_of_a_change_that_shortens_nothing_are_not_all_analysed(monkeypatch):
+    """A changed system with 20 phases, of which the first one refutes the change, takes one analysis instead of 20."""
+    analyses = []
+    of_phase = analyze_module._analysis
+    monkeypatch.setattr(analyze_module, "_analysis", lambda *given: analyses.append(given) or of_phase(*given))
+    system = open_system([SAMPLES / "bodas-test-advanced.yaml"]).system
+    assert analyze_module.analyze_while(system, None, lambda _analysis: False) is None
+    assert len(analyses) == 1
+    whole = analyze_module.analyze_while(system, None, lambda _analysis: True)
+    assert len(analyses) == 1 + 20
+    assert whole.chains == analyze_module.analyze_system(system).chains
