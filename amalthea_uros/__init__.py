@@ -13,6 +13,7 @@ This module is the public interface:
   `to_dataframe()`, and notebooks display them as tables
 - synthetic tasks and chains without any file: `taskset`, `task`; random ones: `random_taskset`, `random_tasks`, `uunifast`,
   `uunifast_discard`, `log_uniform_periods`, `automotive_periods`
+- analysis methods of your own beside those of the tool: `AnalysisMethod`, `method_bounds`
 - pictures of results: `gantt`, `timeline`, `histogram`, `picture`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
@@ -151,6 +152,9 @@ if TYPE_CHECKING:
     from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.optimize import Optimization as Optimization
     from amalthea_uros.services.optimize import optimize as optimize
+    from amalthea_uros.services.own_methods import AnalysisMethod as AnalysisMethod
+    from amalthea_uros.services.own_methods import MethodBounds as MethodBounds
+    from amalthea_uros.services.own_methods import method_bounds as method_bounds
     from amalthea_uros.services.simulate import SimulationResult as SimulationResult
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
@@ -235,6 +239,7 @@ _NAMES = {
     "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.optimize": ("Optimization", "optimize"),
+    "services.own_methods": ("AnalysisMethod", "MethodBounds", "method_bounds"),
     "validate.settings": ("CheckSettings",),
     "services.simulate": ("SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
     "services.sweep": ("sweep",),

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 import amalthea_uros as amuros
-from amalthea_uros._internal.stated_times import stated_time
+from amalthea_uros.design.stated_times import stated_time
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import Duration
 

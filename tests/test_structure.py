@@ -60,7 +60,6 @@ MORE_IMPORTS = {
     "services/check.py": 28,
     "services/report.py": 28,
     "services/simulate.py": 29,
-    "services/subject.py": 26,
     "timing/context.py": 26,
 }
 #: The public interface imports what it exports.

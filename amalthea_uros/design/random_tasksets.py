@@ -16,14 +16,14 @@ from math import ceil, exp, log
 from random import Random
 from typing import Literal, TypeAlias
 
-from amalthea_uros._internal.stated_times import TimeLike, stated_time
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.design.task_parameters import TaskParameters, task
 from amalthea_uros.design.taskset import taskset
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import MILLISECOND, Duration, Time
 
-#: Where random numbers come from: the same seed gives the same numbers on every machine.
+#: A seed, which gives the same numbers again, or a generator that continues.
 Randomness: TypeAlias = int | Random
 
 #: Milliseconds and the share of the runnables in percent; 15 % more are activated by the angle of the crankshaft.
@@ -36,8 +36,8 @@ def uunifast(count: int, utilization: float, seed: Randomness) -> list[float]:
     """Utilizations of tasks with a given sum, all sets of which are equally probable (UUniFast).
 
     >>> shares = uunifast(4, 0.8, seed=1)
-    >>> len(shares), round(sum(shares), 9)
-    (4, 0.8)
+    >>> len(shares), f"{sum(shares):.6f}"
+    (4, '0.800000')
 
     Raises
     ------
@@ -45,12 +45,12 @@ def uunifast(count: int, utilization: float, seed: Randomness) -> list[float]:
     """
     _check(count, utilization)
     random = _random(seed)
-    found, rest = [], utilization
+    shares, rest = [], utilization
     for left in range(count - 1, 0, -1):
         following = rest * random.random() ** (1 / left)
-        found.append(rest - following)
+        shares.append(rest - following)
         rest = following
-    return [*found, rest]
+    return [*shares, rest]
 
 
 def uunifast_discard(count: int, utilization: float, seed: Randomness, most: float = 1.0) -> list[float]:
@@ -64,9 +64,9 @@ def uunifast_discard(count: int, utilization: float, seed: Randomness, most: flo
     random = _random(seed)
     if utilization <= count * most:
         for _ in range(_MOST_TRIES):
-            found = uunifast(count, utilization, random)
-            if max(found) <= most:
-                return found
+            shares = uunifast(count, utilization, random)
+            if max(shares) <= most:
+                return shares
     raise InvalidArgumentError(
         f"{count} tasks of at most {most:g} each reach a utilization of {utilization:g} never or too rarely; use more tasks"
     )
@@ -99,8 +99,8 @@ def log_uniform_periods(
 def automotive_periods(count: int, seed: Randomness) -> list[Duration]:
     """Periods with the frequencies that were published for engine control (Kramer and others 2015), without angle-synchronous ones."""
     random = _random(seed)
-    found = random.choices(list(AUTOMOTIVE_PERIODS), list(AUTOMOTIVE_PERIODS.values()), k=count)
-    return [Duration(period * MILLISECOND) for period in found]
+    chosen = random.choices(list(AUTOMOTIVE_PERIODS), list(AUTOMOTIVE_PERIODS.values()), k=count)
+    return [Duration(period * MILLISECOND) for period in chosen]
 
 
 def random_tasks(

@@ -9,7 +9,7 @@ from math import ceil, floor
 from operator import index
 from typing import Literal, TypeVar
 
-from amalthea_uros._internal.stated_times import TimeLike, stated_time
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import (
     Communication,

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from amalthea_uros._internal.similar import did_you_mean
-from amalthea_uros._internal.stated_times import TimeLike
+from amalthea_uros.design.stated_times import TimeLike
 from amalthea_uros.design.task_parameters import TaskParameters, task
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import (

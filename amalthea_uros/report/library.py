@@ -8,8 +8,8 @@ from io import StringIO
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros._internal.stated_times import TimeLike, stated_time
 from amalthea_uros.design.changes.change import Changes
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.report import formats
 from amalthea_uros.services.files import save_text
 from amalthea_uros.services.report import ReportContent, compile_report

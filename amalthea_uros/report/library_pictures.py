@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros._internal.stated_times import TimeLike, stated_time
 from amalthea_uros.compare.results import Comparison
 from amalthea_uros.design.campaign.sweeps import SweepResult
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
@@ -145,6 +145,6 @@ def _with_system(simulation: Simulation | SimulationResult) -> SimulationResult:
 def _window(result: SimulationResult, window: WindowLike | None) -> drawn.Window | None:
     if window is None:
         return None
-    found = stated_time("the start of the window", window[0], least=0), stated_time("the end of the window", window[1], least=1)
-    drawn.check_window_of(result.options, found)
-    return found
+    part = stated_time("the start of the window", window[0], least=0), stated_time("the end of the window", window[1], least=1)
+    drawn.check_window_of(result.options, part)
+    return part

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros._internal.stated_times import TimeLike, stated_time
 from amalthea_uros.compare.comparing import DEFAULT_TOLERANCE, EVERY_SOURCE, CompareOptions, compare_measured
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
@@ -17,6 +16,7 @@ from amalthea_uros.compare.results import Comparison, Source
 from amalthea_uros.compare.shares import parse_tolerance
 from amalthea_uros.compare.traces import joined
 from amalthea_uros.design.changes.change import Changes
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require

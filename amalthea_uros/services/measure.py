@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros._internal.stated_times import TimeLike, stated_time
 from amalthea_uros.compare.measured.columns import parse_column, parse_unit, parse_valid_rows
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.markers import parse_marker

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros._internal.stated_times import TimeLike, stated_time
 from amalthea_uros.design.campaign.run import RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed

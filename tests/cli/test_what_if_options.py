@@ -135,7 +135,7 @@ def test_diff_names_added_and_removed_tasks_with_their_timing():
     found = amuros("diff", SAMPLES / "bodas-test-advanced.yaml", SAMPLES / "drive-and-lift.yaml")
     lines = found.stdout.splitlines()
     assert "  + task Control_Lift (every 20 ms, 100 us..250 us, priority 4, Core_1)" in lines
-    assert "  - task Message_Factor (every 20 ms, 2 ticks, priority 1, Core_0)" in lines
+    assert "  - task Message_Factor (every 20 ms, 2 us, priority 1, Core_0)" in lines
 
 
 def test_diff_of_equal_models_has_no_timing():

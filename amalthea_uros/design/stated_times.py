@@ -36,10 +36,10 @@ def stated_time(
     ------
     InvalidArgumentError : no time, a number without a unit, or a time below `least`.
     """
-    found = _picoseconds(what, value, unit, rounding, remedy)
-    if least is not None and found < least:
-        raise InvalidArgumentError(f"{what}: {time_text(found)} is {'not positive' if least else 'negative'}")
-    return found
+    time = _picoseconds(what, value, unit, rounding, remedy)
+    if least is not None and time < least:
+        raise InvalidArgumentError(f"{what}: {time_text(time)} is {'not positive' if least else 'negative'}")
+    return time
 
 
 def _picoseconds(what: str, value: TimeLike, unit: str | None, rounding: Callable[[Fraction], int], remedy: str) -> Time:
