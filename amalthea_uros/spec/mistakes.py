@@ -13,7 +13,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, YamlText
-from amalthea_uros.spec.schema_places import Schema, inner_schemas, schema_of, variants
+from amalthea_uros.spec.schema_places import Schema, inner_schemas, nearest_places, schema_of, variants
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.units import shortened
 
@@ -93,6 +93,10 @@ def finding_of(mistake: Mistake, source: YamlText, kind: type[DescriptionSection
             return Finding("YML011", Severity.ERROR, f"missing key {mistake.key!r}", source.location(value.place))
     message, help_text = _sentence(mistake.details, value)
     return Finding("YML012", Severity.ERROR, f"{_owner(mistake)}{message}", source.location(value.place), help_text)
+
+
+#: A key with more places than this says little.
+_MOST_PLACES = 3
 
 
 def intended_key(mistake: Mistake, kind: type[DescriptionSection], similarity: float = _SIMILAR) -> str | None:
@@ -197,8 +201,13 @@ def _advice(mistake: Mistake, kind: type[DescriptionSection]) -> str:
     """What to do about an unknown key."""
     if _AFTER_COMMA.fullmatch(mistake.key):
         return "A comma separates keys; write decimals with a point, e.g. 1.5 ms."
-    intended = intended_key(mistake, kind)
-    if intended:
+    if certain := intended_key(mistake, kind, CERTAIN):
+        return f"Did you mean {certain!r}?"
+    elsewhere = nearest_places(mistake.key, mistake.details["loc"][:-1], kind)
+    if 0 < len(elsewhere) <= _MOST_PLACES:
+        places = " or ".join(f"'{'.'.join(place)}'" if place else "the top level" for place in elsewhere)
+        return f"{mistake.key!r} belongs in {places}."
+    if intended := intended_key(mistake, kind):
         return f"Did you mean {intended!r}?"
     known = _keys(mistake.details["loc"][:-1], kind)
     return f"Known keys: {', '.join(known)}." if known else ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
+from itertools import takewhile
 from typing import Any, TypeAlias
 
 from amalthea_uros.spec.section import DescriptionSection
@@ -64,3 +65,46 @@ def words_at(path: Path, kind: type[DescriptionSection]) -> list[str]:
     booleans = ["true", "false"] if any(variant.get("type") == "boolean" for variant in every) else []
     examples = [word for variant in every for word in variant.get("examples", ())]
     return list(dict.fromkeys(str(word) for word in (*fixed, *booleans, *examples)))
+
+
+#: Sections inside of each other, at most; the schema has no deeper ones that users write.
+_DEEPEST = 6
+
+
+@cache
+def places_of_keys(kind: type[DescriptionSection]) -> Mapping[str, Sequence[tuple[str, ...]]]:
+    """The mappings that may have each key, by the keys that lead to them; lists are left out."""
+    whole = schema_of(kind)
+    places: dict[str, dict[tuple[str, ...], None]] = {}
+
+    def add(schema: Schema, path: tuple[str, ...]) -> None:
+        for variant in variants(schema, whole):
+            for name, inner in variant.get("properties", {}).items():
+                places.setdefault(name, {})[path] = None
+                if len(path) < _DEEPEST:
+                    add(inner, (*path, name))
+            if "items" in variant:
+                add(variant["items"], path)
+
+    add(whole, ())
+    return {key: tuple(paths) for key, paths in places.items()}
+
+
+def nearest_places(key: str, path: Path, kind: type[DescriptionSection]) -> list[tuple[str, ...]]:
+    """The mappings that may have a key and are nearest to another one, in which it is: those with most of its path.
+
+    A key that is only in other parts of the description must be unique to say anything.
+    """
+    here = tuple(part for part in path if isinstance(part, str))
+    others = [each for each in places_of_keys(kind).get(key, ()) if each != here]
+    if not others:
+        return []
+    most = max(_common(each, here) for each in others)
+    nearest = [each for each in others if _common(each, here) == most]
+    shortest = min(map(len, nearest))
+    return [each for each in nearest if len(each) == shortest] if most or len(others) == 1 else []
+
+
+def _common(one: Sequence[str], other: Sequence[str]) -> int:
+    """The number of parts with which both begin."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False)))
