@@ -173,9 +173,24 @@ def parse(text: str, dimension: Dimension) -> Fraction:
     return value
 
 
+#: Units of time that people write, and the ones that are meant.
+_OTHER_TIMES = {
+    **dict.fromkeys(("m",), "'min' for minutes, or 'ms' for milliseconds"),
+    **dict.fromkeys(("mins", "minute", "minutes"), "'min'"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "'s'"),
+    **dict.fromkeys(("hr", "hrs", "hour", "hours"), "'h'"),
+    **dict.fromkeys(("msec", "millis", "milliseconds"), "'ms'"),
+    **dict.fromkeys(("usec", "micros", "microseconds"), "'us'"),
+    **dict.fromkeys(("nsec", "nanoseconds"), "'ns'"),
+    **dict.fromkeys(("d", "day", "days"), "hours, e.g. '24 h'"),
+}
+
+
 def _advice(unit: str, dimension: Dimension) -> str:
     from difflib import get_close_matches  # only after a mistake
 
+    if dimension is TIME and unit.lower() in _OTHER_TIMES:
+        return f"; write {_OTHER_TIMES[unit.lower()]}"
     folded = {known.lower(): known for known in dimension.units}
     near = folded.get(unit.lower()) or next(iter(get_close_matches(unit, dimension.units, n=1)), None)
     return f", did you mean {near!r}?" if near else f"; known units: {', '.join(dimension.units)}"

@@ -119,8 +119,8 @@ def test_another_clock(tmp_path):
         (["--explain", "Nothing"], "unknown process, callback or chain 'Nothing'; known: Executor_Task"),
         (["--chain", "x"], "unknown chain 'x'"),
         (["--scale", "0"], "0"),
-        (["--mode", "speed"], "not of the form LABEL=VALUE"),
-        (["--mode", "speed=1"], "unknown mode label 'speed'; the model has no mode label"),
+        (["--mode-label", "speed"], "not of the form LABEL=VALUE"),
+        (["--mode-label", "speed=1"], "unknown mode label 'speed'; the model has no mode label"),
         (["--memory", "cached"], "'cached'"),
     ],
 )
