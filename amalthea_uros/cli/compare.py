@@ -26,6 +26,7 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, PICTURE, Parsed, assignment
+from amalthea_uros.cli.patience import working
 from amalthea_uros.compare.calibration.calibration import calibrate_file
 from amalthea_uros.compare.calibration.options import FIT_FORM, AgentFit, CalibrationOptions, Form, parse_fit
 from amalthea_uros.compare.comparing import CompareOptions
@@ -138,7 +139,8 @@ def compare(
         overheads=dict(overheads),
         uncertainty=uncertainty,
     )
-    result = compare_files(model, traces, options, reading, settings=settings, changes=changes)
+    with working("Comparing"):
+        result = compare_files(model, traces, options, reading, settings=settings, changes=changes)
     if picture is not None:
         from amalthea_uros.report.result_pictures import comparison_picture
 

@@ -25,6 +25,7 @@ from amalthea_uros.cli.options import (
 )
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_result
 from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, Parsed, assignment, picture_path
+from amalthea_uros.cli.patience import working
 from amalthea_uros.cli.pictures import Pictures
 from amalthea_uros.design.campaign.run import count_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult
@@ -189,9 +190,11 @@ def simulate(
     changed = open_changed(paths, settings, changes, with_bus=with_bus)
     pictures.check(changed.system, options)
     try:
-        result = simulate_changed(changed, options, traces, with_metrics=with_metrics)
+        with working(f"Simulating {time_text(duration)}"):
+            result = simulate_changed(changed, options, traces, with_metrics=with_metrics)
         _show(result, table, outputs)
-        pictures.write(result)
+        with working("Drawing"):
+            pictures.write(result)
     except KeyboardInterrupt:
         click.echo("interrupted: the run is not finished; traces of unfinished runs are not kept", err=True)
         sys.exit(INTERRUPTED)

@@ -31,12 +31,12 @@ def completions(document: TextDocument, position: types.Position) -> list[types.
         return []
     line = document.lines[position.line] if position.line < len(document.lines) else ""
     before = line[: document.column(position)]
-    found = list(_keys(document, position, before))
-    return found or list(_words(document, position, before))
+    keys = list(_keys(document, position, before))
+    return keys or list(_words(document, position, before))
 
 
 def key_hover(document: TextDocument, position: types.Position) -> types.Hover | None:
-    """What the key at a position means; None if there is no key."""
+    """The meaning of the key at a position; None if there is no key."""
     if not _is_examined(document) or position.line >= len(document.lines):
         return None
     line, column = document.lines[position.line], document.column(position)

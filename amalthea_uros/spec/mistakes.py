@@ -198,7 +198,7 @@ def _correction(details: ErrorDetails, node: Node) -> str:
 
 
 def _advice(mistake: Mistake, kind: type[DescriptionSection]) -> str:
-    """What to do about an unknown key."""
+    """The help line for an unknown key."""
     if _AFTER_COMMA.fullmatch(mistake.key):
         return "A comma separates keys; write decimals with a point, e.g. 1.5 ms."
     if certain := intended_key(mistake, kind, CERTAIN):
@@ -218,8 +218,7 @@ def _keys(loc: tuple[int | str, ...], kind: type[DescriptionSection]) -> list[st
     whole = schema_of(kind)
     level: list[Schema] = [whole]
     for part in loc:
-        found = [inner for one in level for inner in inner_schemas(one, part, whole)]
-        level = found or level
+        level = [inner for one in level for inner in inner_schemas(one, part, whole)] or level
     return [key for one in level for variant in variants(one, whole) for key in variant.get("properties", ())]
 
 
