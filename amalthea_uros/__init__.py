@@ -11,7 +11,10 @@ This module is the public interface:
 - answers about whatever describes a system (files, the text or content of an `app.yaml`, a model, a system): `analyze`, `simulate`,
   `what_if`; why, and what would be better: `explain`, `improvements`; their results have `to_records()` and
   `to_dataframe()`, and notebooks display them as tables
-- synthetic tasks and chains without any file: `taskset`, `task`
+- synthetic tasks and chains without any file: `taskset`, `task`; random ones: `random_taskset`, `random_tasks`, `uunifast`,
+  `uunifast_discard`, `log_uniform_periods`, `automotive_periods`
+- analysis methods of your own beside those of the tool: `AnalysisMethod`, `method_bounds`
+- pictures of results: `gantt`, `timeline`, `histogram`, `picture`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
 - the files for the build of the firmware, and a description of code that exists: `generate`, `check_colcon_meta`, `import_code`, with
@@ -22,7 +25,7 @@ This module is the public interface:
 - AMALTHEA models: `Model` (`Model.new()` is an empty one), `check`, `extract`; all AMALTHEA classes are in `amuros.am`
 - systems of the generic performance model: `analyze_system`, `sensitivity`, `propose_priorities`, `paths`, `build_model`; their classes
   are in `amuros.perf`
-- times and other quantities as text and numbers: `amuros.units`; exceptions: `amuros.errors`
+- times with their unit: `Duration`; other quantities as text and numbers: `amuros.units`; exceptions: `amuros.errors`
 """
 
 from __future__ import annotations
@@ -81,6 +84,12 @@ if TYPE_CHECKING:
     from amalthea_uros.design.optimize.problem import Conclusion as Conclusion
     from amalthea_uros.design.optimize.problem import SearchResult as SearchResult
     from amalthea_uros.design.proposals import DesignProposal as DesignProposal
+    from amalthea_uros.design.random_tasksets import automotive_periods as automotive_periods
+    from amalthea_uros.design.random_tasksets import log_uniform_periods as log_uniform_periods
+    from amalthea_uros.design.random_tasksets import random_tasks as random_tasks
+    from amalthea_uros.design.random_tasksets import random_taskset as random_taskset
+    from amalthea_uros.design.random_tasksets import uunifast as uunifast
+    from amalthea_uros.design.random_tasksets import uunifast_discard as uunifast_discard
     from amalthea_uros.design.task_parameters import TaskParameters as TaskParameters
     from amalthea_uros.design.task_parameters import task as task
     from amalthea_uros.design.taskset import taskset as taskset
@@ -111,6 +120,11 @@ if TYPE_CHECKING:
     from amalthea_uros.perf.system import System as System
     from amalthea_uros.report.library import Report as Report
     from amalthea_uros.report.library import report as report
+    from amalthea_uros.report.library_pictures import Picture as Picture
+    from amalthea_uros.report.library_pictures import gantt as gantt
+    from amalthea_uros.report.library_pictures import histogram as histogram
+    from amalthea_uros.report.library_pictures import picture as picture
+    from amalthea_uros.report.library_pictures import timeline as timeline
     from amalthea_uros.services.analyze import AnalysisResult as AnalysisResult
     from amalthea_uros.services.analyze import Explanation as Explanation
     from amalthea_uros.services.analyze import analyze as analyze
@@ -138,6 +152,9 @@ if TYPE_CHECKING:
     from amalthea_uros.services.migrate import migrate as migrate
     from amalthea_uros.services.optimize import Optimization as Optimization
     from amalthea_uros.services.optimize import optimize as optimize
+    from amalthea_uros.services.own_methods import AnalysisMethod as AnalysisMethod
+    from amalthea_uros.services.own_methods import MethodBounds as MethodBounds
+    from amalthea_uros.services.own_methods import method_bounds as method_bounds
     from amalthea_uros.services.simulate import SimulationResult as SimulationResult
     from amalthea_uros.services.simulate import simulate as simulate
     from amalthea_uros.services.simulate import simulate_campaign as simulate_campaign
@@ -158,6 +175,7 @@ if TYPE_CHECKING:
     from amalthea_uros.trace.table import EntityKind as EntityKind
     from amalthea_uros.trace.table import EventKind as EventKind
     from amalthea_uros.trace.table import EventTable as EventTable
+    from amalthea_uros.units import Duration as Duration
     from amalthea_uros.units import parse_time as parse_time
     from amalthea_uros.uros.assemble import Assembly as Assembly
     from amalthea_uros.uros.middleware.profile import Profile as Profile
@@ -187,6 +205,14 @@ _NAMES = {
     "design.improvements": ("Improvement", "Improvements"),
     "design.optimize.problem": ("Conclusion", "SearchResult"),
     "design.proposals": ("DesignProposal",),
+    "design.random_tasksets": (
+        "automotive_periods",
+        "log_uniform_periods",
+        "random_tasks",
+        "random_taskset",
+        "uunifast",
+        "uunifast_discard",
+    ),
     "design.task_parameters": ("TaskParameters", "task"),
     "design.taskset": ("taskset",),
     "diagnostics": ("Finding", "Location", "Severity"),
@@ -200,6 +226,7 @@ _NAMES = {
     "perf.activities": ("Communication",),
     "perf.system": ("System",),
     "report.library": ("Report", "report"),
+    "report.library_pictures": ("Picture", "gantt", "histogram", "picture", "timeline"),
     "services.analyze": ("AnalysisResult", "Explanation", "analyze", "analyze_files"),
     "services.build": ("BuildResult", "build", "describe"),
     "services.calibrate": ("calibrate",),
@@ -212,6 +239,7 @@ _NAMES = {
     "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.optimize": ("Optimization", "optimize"),
+    "services.own_methods": ("AnalysisMethod", "MethodBounds", "method_bounds"),
     "validate.settings": ("CheckSettings",),
     "services.simulate": ("SimulationResult", "simulate", "simulate_campaign", "simulate_files"),
     "services.sweep": ("sweep",),
@@ -223,7 +251,7 @@ _NAMES = {
     "timing.dataflow.paths": ("paths",),
     "timing.response": ("Claim", "Response"),
     "trace.table": ("Entity", "EntityKind", "EventKind", "EventTable"),
-    "units": ("parse_time",),
+    "units": ("Duration", "parse_time"),
     "uros.assemble": ("Assembly",),
     "uros.middleware.profile": ("Profile",),
     "xmi.load": ("load",),

@@ -13,7 +13,7 @@ from decimal import MAX_EMAX, ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Conte
 from enum import StrEnum
 from fractions import Fraction
 from math import ceil, floor
-from typing import Generic, NamedTuple, TypeAlias, TypeVar
+from typing import Generic, NamedTuple, Self, TypeAlias, TypeVar
 
 #: Picoseconds.
 Time: TypeAlias = int
@@ -41,6 +41,44 @@ class Interval(OpenInterval[N_co]):
     """Bounds of a value: the lower and the upper one, both known, in the unit of the value."""
 
     upper: N_co
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Duration:
+    """A time that is more than a number: it cannot be taken for one of another unit.
+
+    >>> print(Duration.of("1.5 ms") + Duration.of("250 us"), Duration(time=20_000) * 2)
+    1.75 ms 40 ns
+
+    Attributes
+    ----------
+    time : whole picoseconds, as results have them
+    """
+
+    time: Time
+
+    def __post_init__(self) -> None:
+        if isinstance(self.time, str):
+            raise TypeError(f"a Duration is made of whole picoseconds; write Duration.of({self.time!r})")
+
+    @classmethod
+    def of(cls, text: str) -> Self:
+        """The time of a text such as "10 ms"; ValueError as for `parse`."""
+        return cls(parse_time(text))
+
+    def __add__(self, other: Duration) -> Duration:
+        return Duration(self.time + other.time)
+
+    def __sub__(self, other: Duration) -> Duration:
+        return Duration(self.time - other.time)
+
+    def __mul__(self, factor: int) -> Duration:
+        return Duration(self.time * factor)
+
+    __rmul__ = __mul__
+
+    def __str__(self) -> str:
+        return time_text(self.time)
 
 
 PICOSECOND: Time = 1
@@ -135,9 +173,24 @@ def parse(text: str, dimension: Dimension) -> Fraction:
     return value
 
 
+#: Units of time that people write, and the ones that are meant.
+_OTHER_TIMES = {
+    **dict.fromkeys(("m",), "'min' for minutes, or 'ms' for milliseconds"),
+    **dict.fromkeys(("mins", "minute", "minutes"), "'min'"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "'s'"),
+    **dict.fromkeys(("hr", "hrs", "hour", "hours"), "'h'"),
+    **dict.fromkeys(("msec", "millis", "milliseconds"), "'ms'"),
+    **dict.fromkeys(("usec", "micros", "microseconds"), "'us'"),
+    **dict.fromkeys(("nsec", "nanoseconds"), "'ns'"),
+    **dict.fromkeys(("d", "day", "days"), "hours, e.g. '24 h'"),
+}
+
+
 def _advice(unit: str, dimension: Dimension) -> str:
     from difflib import get_close_matches  # only after a mistake
 
+    if dimension is TIME and unit.lower() in _OTHER_TIMES:
+        return f"; write {_OTHER_TIMES[unit.lower()]}"
     folded = {known.lower(): known for known in dimension.units}
     near = folded.get(unit.lower()) or next(iter(get_close_matches(unit, dimension.units, n=1)), None)
     return f", did you mean {near!r}?" if near else f"; known units: {', '.join(dimension.units)}"

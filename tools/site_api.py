@@ -17,7 +17,7 @@ PAGES = {
     "descriptions": ("uros",),
     "analysis": ("analyze", "executors"),
     "simulation": ("simulate", "trace"),
-    "systems": ("perf", "timing", "design.changes", "design.tasksets", "services.taskset"),
+    "systems": ("perf", "timing", "design.changes", "design.taskset", "design.task_parameters", "design.random_tasksets"),
 }
 OTHERS = "findings"
 

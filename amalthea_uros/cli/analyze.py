@@ -13,6 +13,7 @@ from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.cli.options import FAILING, analysis_options, fail_on_option, metrics_option, paths_argument, set_option
 from amalthea_uros.cli.output import Output, beside_files, output_option, refuse_input, show_findings, show_result, show_text
 from amalthea_uros.cli.parameters import INPUT, OUTPUT, OUTPUT_FILE
+from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.basics.escape import output_line
@@ -90,11 +91,13 @@ def analyze(
             raise click.UsageError(f"-o writes a changed model; add a change, e.g. --set {EXAMPLE}")
         refuse_input(target, "-o")
     outputs = beside_files(outputs, [("-o", target)])
-    result = analyze_files(paths, settings, changes=changes, all_methods=method == "all", **wanted)
+    with working("Analyzing"):
+        result = analyze_files(paths, settings, changes=changes, all_methods=method == "all", **wanted)
     if explained is not None:
         from amalthea_uros.services.explain import explain
 
-        result = replace(result, explanation=explain(result, explained, LatencyQuantity(quantity)))
+        with working("Explaining"):
+            result = replace(result, explanation=explain(result, explained, LatencyQuantity(quantity)))
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     if target is not None:
         write_changed(paths, changes, settings, target)

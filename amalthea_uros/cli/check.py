@@ -48,6 +48,12 @@ _profile_option = several(
     "--each", is_flag=True, help="Check every .amxmi file as a model of its own; otherwise they are one model together."
 )
 @click.option("--only-amuros", is_flag=True, help="Skip YAML files without the key 'amuros', which are of other programs.")
+@click.option(
+    "--details",
+    "with_details",
+    is_flag=True,
+    help="In SARIF, JUnit and baselines, also what follows from other findings; by default, one result for each flaw.",
+)
 @click.option("--fix", is_flag=True, help="First repair what can be repaired in only one way.")
 @click.option(
     "--diff",
@@ -72,6 +78,7 @@ def check(
     baseline: Path | None,
     new_baseline: Path | None,
     outputs: tuple[Output, ...],
+    with_details: bool,
     **which: bool,
 ) -> None:
     """Check models by rules.
@@ -103,7 +110,7 @@ def check(
         if show_diff:
             show_text(FilesDiff(repairs.changed, "repaired"))
             sys.exit(1 if repairs.changed else 0)
-    result = check_files(paths, settings, **which)
+    result = check_files(paths, settings, with_details=with_details, **which)
     if new_baseline is not None:
         write_baseline(result, new_baseline)
     write_outputs(outputs, result, CheckStatistics(result) if statistics else None)

@@ -25,7 +25,8 @@ from amalthea_uros.cli.output import (
     show_text,
     write_outputs,
 )
-from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, Parsed, assignment
+from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, PICTURE, Parsed, assignment
+from amalthea_uros.cli.patience import working
 from amalthea_uros.compare.calibration.calibration import calibrate_file
 from amalthea_uros.compare.calibration.options import FIT_FORM, AgentFit, CalibrationOptions, Form, parse_fit
 from amalthea_uros.compare.comparing import CompareOptions
@@ -98,7 +99,7 @@ def _overhead(text: str) -> tuple[str, Time]:
 @click.option(
     "--all", "with_all", is_flag=True, help="Show all quantities, not only the most important ones and what disagrees."
 )
-@click.option("--picture", type=OUTPUT_FILE, metavar="FILE", help="Draw predictions and measured distributions, as SVG.")
+@click.option("--picture", type=PICTURE, metavar="FILE", help="Draw predictions and measured distributions, as SVG.")
 @set_option
 @settings_options
 @measure_options
@@ -138,7 +139,8 @@ def compare(
         overheads=dict(overheads),
         uncertainty=uncertainty,
     )
-    result = compare_files(model, traces, options, reading, settings=settings, changes=changes)
+    with working("Comparing"):
+        result = compare_files(model, traces, options, reading, settings=settings, changes=changes)
     if picture is not None:
         from amalthea_uros.report.result_pictures import comparison_picture
 

@@ -19,7 +19,7 @@ from amalthea_uros.cli.output import (
     show_text,
     write_outputs,
 )
-from amalthea_uros.cli.parameters import INPUT, OUTPUT, OUTPUT_FILE, Offer
+from amalthea_uros.cli.parameters import INPUT, MODEL, OUTPUT, OUTPUT_FILE, Offer
 from amalthea_uros.diagnostics import Severity, worst
 from amalthea_uros.metamodel.versions import supported_versions, version_key
 from amalthea_uros.services.init import DEFAULT_BOARD, catalogue, example_names, init_from_board, init_from_example
@@ -30,7 +30,9 @@ VERSIONS = [version for version in supported_versions() if version_key(version) 
 _ANOTHER_BOARD = "; for another controller omit --board, and set its frequency and cores in the file"
 _BOARDS, _EXAMPLES = known_platforms(), example_names()
 _description_argument = click.argument("description", type=INPUT, metavar="APP.YAML")
-_platform_option = click.option("--platform", help="Platform to use instead of the one in APP.YAML: a known name or a file.")
+_platform_option = click.option(
+    "--board", "platform", help="Board to use instead of the one in APP.YAML: a known name, or a file."
+)
 _force_option = click.option("--force", is_flag=True, help="Replace a file that exists.")
 
 
@@ -83,7 +85,7 @@ def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: b
 
 @click.command("build")
 @_description_argument
-@click.option("-o", "--out", "target", type=OUTPUT, help="The file to write; default: APP.amxmi beside APP.YAML.")
+@click.option("-o", "--out", "target", type=MODEL, help="The file to write; default: APP.amxmi beside APP.YAML.")
 @click.option(
     "--amalthea",
     "version",

@@ -19,32 +19,46 @@ from amalthea_uros.report.basics.escape import visible
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-#: Command -> its line in `amuros --help`; the module with the same name has the rest.
-COMMANDS = {
-    "analyze": "Compute response times, loads, chain latencies and verdicts.",
-    "build": "Build an AMALTHEA model from an app.yaml.",
-    "calibrate": "Put measured times into an app.yaml.",
-    "chains": "List the paths from one process to another, with their latencies.",
-    "check": "Check models by rules.",
-    "compare": "Compare predictions with what was measured.",
-    "completion": "Print what makes a shell complete commands, options and files.",
-    "diff": "Compare two models by meaning.",
-    "explain": "Explain a rule or another finding.",
-    "fmt": "Rewrite models in canonical form.",
-    "generate": "Write or check build options of the firmware: colcon.meta.",
-    "import": "Write an app.yaml from C or C++ sources that use rclc.",
-    "info": "Show the content of a model.",
-    "init": "Write a commented app.yaml to begin with, or copy an example.",
-    "lsp": "Run the language server, for editors.",
-    "measure": "Measure the times in a trace: statistics, jitter, histograms.",
-    "migrate": "Convert models to another AMALTHEA version.",
-    "optimize": "Search for changes with which all limits are met, each proved by the analysis.",
-    "report": "Write a report: one HTML page, or a summary in Markdown.",
-    "rules": "List the rules of check.",
-    "schema": "Print the JSON Schema of app.yaml.",
-    "simulate": "Simulate the system, once or for many variants and seeds.",
-    "sweep": "Analyze the system with many values of its properties.",
+#: Task -> command -> its line in `amuros --help`; the module with the same name has the rest.
+_TASKS = {
+    "Describe": {
+        "init": "Write a commented app.yaml to begin with, or copy an example.",
+        "import": "Write an app.yaml from C or C++ sources that use rclc.",
+        "build": "Build an AMALTHEA model from an app.yaml.",
+        "generate": "Write or check build options of the firmware: colcon.meta.",
+    },
+    "Check and predict": {
+        "check": "Check models by rules.",
+        "analyze": "Compute response times, loads, chain latencies and verdicts.",
+        "chains": "List the paths between two processes, with their latencies.",
+        "simulate": "Simulate the system, once or for many variants and seeds.",
+        "report": "Write a report: one HTML page, or a summary in Markdown.",
+    },
+    "Improve": {
+        "sweep": "Analyze the system with many values of its properties.",
+        "optimize": "Search for changes that meet all limits, each proved.",
+    },
+    "Measure": {
+        "measure": "Measure the times in a trace: statistics, jitter, histograms.",
+        "compare": "Compare predictions with what was measured.",
+        "calibrate": "Put measured times into an app.yaml.",
+    },
+    "Work with models": {
+        "info": "Show the content of a model.",
+        "diff": "Compare two models by meaning.",
+        "fmt": "Rewrite models in canonical form.",
+        "migrate": "Convert models to another AMALTHEA version.",
+    },
+    "Look up and set up": {
+        "rules": "List the rules of check.",
+        "explain": "Explain a rule or another finding.",
+        "schema": "Print the JSON Schema of app.yaml.",
+        "lsp": "Run the language server, for editors.",
+        "completion": "Print what makes a shell complete commands.",
+    },
 }
+#: Command -> its line.
+COMMANDS = {command: line for commands in _TASKS.values() for command, line in commands.items()}
 
 #: The modules with several commands; the others have the name of their command.
 _MODULES = {
@@ -69,6 +83,10 @@ class LazyGroup(click.Group):
         try:
             _check_environment()
             return super().invoke(ctx)
+        except click.NoSuchOption as error:
+            from amalthea_uros.cli.wrong_options import explained
+
+            raise explained(error) from None
         except click.ClickException as error:
             # The list of what can be given for a missing argument has lines of its own, and nothing of the user in it.
             if error.format_message().isprintable() or isinstance(error, click.MissingParameter):
@@ -98,9 +116,11 @@ class LazyGroup(click.Group):
         return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """List the commands without importing them."""
-        with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
+        """List the commands by task, without importing them."""
+        width = max(map(len, COMMANDS))
+        for task, commands in _TASKS.items():
+            with formatter.section(task):
+                formatter.write_dl([(command.ljust(width), line) for command, line in commands.items()])
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})

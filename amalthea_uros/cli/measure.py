@@ -13,7 +13,7 @@ import click
 
 from amalthea_uros.cli.options import all_of, raw_names_option
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_findings, write_outputs
-from amalthea_uros.cli.parameters import INPUT, Parsed, assignment, output_path
+from amalthea_uros.cli.parameters import INPUT, Parsed, assignment, picture_path
 from amalthea_uros.compare.measured.columns import FORM as COLUMN_FORM
 from amalthea_uros.compare.measured.columns import VALID_FORM, parse_column, parse_unit, parse_valid_rows
 from amalthea_uros.compare.measured.events import begins_of
@@ -59,14 +59,18 @@ _OPTIONS = all_of(
             help="Rows of a table that have values; default: status=ok if there is such a column. Others count as lost.",
         ),
         click.option(
-            "--baseline",
+            "--empty",
             "baselines",
             multiple=True,
             metavar="[OBJECT=]EMPTY",
             help="Subtract the times of an empty object from those of all others, or of one; may be repeated.",
         ),
         click.option(
-            "--baseline-from", type=INPUT, metavar="TRACE", help="Trace with the empty objects; default: the same one."
+            "--empty-from",
+            "baseline_from",
+            type=INPUT,
+            metavar="TRACE",
+            help="Trace with the empty objects; default: the same one.",
         ),
         click.option(
             "--period",
@@ -128,7 +132,7 @@ def measure_options(function: Callable[..., Any]) -> Callable[..., Any]:
     "--histogram",
     "histograms",
     multiple=True,
-    type=assignment("NAME=FILE", output_path),
+    type=assignment("NAME=FILE", picture_path),
     help="Draw the times of an object, or another of its quantities, e.g. Task.start_to_start=period.svg; may be repeated.",
 )
 @raw_names_option

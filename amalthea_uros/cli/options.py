@@ -212,7 +212,7 @@ def analysis_options(function: Callable[..., Any]) -> Callable[..., Any]:
         function(settings=replace(settings, modes=dict(modes)), **others)
 
     mode = click.option(
-        "--mode",
+        "--mode-label",
         "modes",
         multiple=True,
         type=assignment("LABEL=VALUE", str),

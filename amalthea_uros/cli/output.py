@@ -73,12 +73,13 @@ class OutputType(click.ParamType[Output]):
         return [CompletionItem(name) for name in self.names if name.startswith(incomplete)]
 
 
-def output_option(result: str) -> Callable[[Any], Any]:
+def output_option(result: str, *, has_default: bool = True) -> Callable[[Any], Any]:
     """The option for a command: its formats are those that can write its result.
 
     Parameters
     ----------
     result : the name of the class, which need not be imported to know that
+    has_default : whether the first format goes to standard output if none is given
     """
     names = formats.formats_for(result)
     return click.option(
@@ -87,8 +88,8 @@ def output_option(result: str) -> Callable[[Any], Any]:
         type=OutputType(names),
         multiple=True,
         callback=_without_mixture,
-        default=(names[0],),
-        show_default=True,
+        default=(names[0],) if has_default else (),
+        show_default=has_default,
         help=f"Format and file of the result: {', '.join(names)}; e.g. json=result.json. Without a file, or with '-', it goes to "
         "standard output. May be repeated.",
     )

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT
+from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_stream
 from amalthea_uros._internal.similar import did_you_mean
 
 T = TypeVar("T")
@@ -34,6 +34,32 @@ OUTPUT = FileType(STANDARD_OUTPUT)
 OUTPUT_FILE = FileType(STANDARD_OUTPUT, dir_okay=False)
 
 
+class SuffixedFile(FileType):
+    """A file to write, whose suffix has to be that of its format; `-` is standard output."""
+
+    def __init__(self, suffix: str, reason: str) -> None:
+        super().__init__(STANDARD_OUTPUT, dir_okay=False)
+        self.suffix = suffix
+        self.reason = reason
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Parse one value."""
+        try:
+            return self.checked(super().convert(value, param, ctx))
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
+
+    def checked(self, path: Path) -> Path:
+        """The path; ValueError for another suffix."""
+        if path != STANDARD_OUTPUT and path.suffix.lower() != self.suffix and not is_stream(path):
+            raise ValueError(f"'{path}' does not end with {self.suffix}; {self.reason}")
+        return path
+
+
+PICTURE = SuffixedFile(".svg", "pictures are written as SVG")
+MODEL = SuffixedFile(".amxmi", "models are written as AMALTHEA XML")
+
+
 def output_path(text: str) -> Path:
     """A file to write that is given as part of an option."""
     return STANDARD_OUTPUT if text == "-" else Path(text)
@@ -54,6 +80,9 @@ class PositiveNumber(click.FloatRange):
 
 
 POSITIVE = PositiveNumber()
+def picture_path(text: str) -> Path:
+    """A picture that is given as part of an option; ValueError for another suffix."""
+    return PICTURE.checked(output_path(text))
 
 
 class Parsed(click.ParamType[T]):

@@ -20,6 +20,7 @@ from amalthea_uros.cli.options import (
 )
 from amalthea_uros.cli.output import (
     Output,
+    output_option,
     refuse_input,
     refuse_unwritable,
     show_differences,
@@ -27,6 +28,7 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parameters import OUTPUT_FILE
+from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.report.formats import SUFFIXES, format_of
 from amalthea_uros.report.wording.closing_line import closing_line
@@ -42,12 +44,11 @@ _SUFFIXES = ", ".join(SUFFIXES)
     "-o",
     "files",
     multiple=True,
-    required=True,
     type=OUTPUT_FILE,
     metavar="FILE",
-    help=f"File to write; its suffix says the format: {_SUFFIXES}. May be repeated; '-' is standard output.",
+    help=f"File to write; its suffix says the format: {_SUFFIXES}. May be repeated.",
 )
-@click.option("--format", "standard_format", type=click.Choice(list(SUFFIXES.values())), help="Format of standard output.")
+@output_option("ReportContent", has_default=False)
 @click.option("--title", help="Title of the report; default: the names of the files.")
 @click.option(
     "--date", default="", help="Date, or any other text, shown below the title; without it the output is reproducible."
@@ -61,7 +62,7 @@ _SUFFIXES = ", ".join(SUFFIXES)
 def report(
     paths: tuple[Path, ...],
     files: tuple[Path, ...],
-    standard_format: str | None,
+    outputs: tuple[Output, ...],
     changes: tuple[Change, ...],
     settings: Settings,
     no_simulation: bool,
@@ -74,26 +75,27 @@ def report(
     itself and can be printed; a summary (.md) fits in a comment of a CI system; .mmd and .dot have the data flow. The exit code is 1
     if a deadline, requirement or constraint is missed, an activation is lost, or a core is overloaded.
     """
-    outputs = _outputs(files, standard_format)
-    content = compile_report(paths, settings, changes=changes, with_simulation=not no_simulation, **options)
+    outputs = _outputs(files, outputs)
+    with working("Analyzing and simulating"):
+        content = compile_report(paths, settings, changes=changes, with_simulation=not no_simulation, **options)
     show_differences(content.differences)
     write_outputs(outputs, content)
     show_line(closing_line(content.analysis.summary))
     sys.exit(1 if content.analysis.summary.schedulable in FAILING[fail_on] else 0)
 
 
-def _outputs(files: tuple[Path, ...], standard_format: str | None) -> list[Output]:
+def _outputs(files: tuple[Path, ...], outputs: tuple[Output, ...]) -> list[Output]:
     """The formats and files, of which each can be written; refused before work that may take long."""
-    if len({path if is_standard_output(path) else path.resolve() for path in files}) < len(files):
-        raise click.UsageError("two options -o name the same file; give each its own")
-    if standard_format is not None and not any(map(is_standard_output, files)):
-        raise click.UsageError(
-            "--format is the format of standard output; add -o -, or choose the format by the suffix of the file"
-        )
-    for path in files:
-        refuse_input(path, f"-o {path}")
-        refuse_unwritable(path)
-    return [Output(standard_format or "html" if is_standard_output(path) else format_of(path), _stream(path)) for path in files]
+    if not files and not outputs:
+        raise click.UsageError("nothing is written; add -o FILE, e.g. -o report.html, or --output FORMAT")
+    named = [Output("html" if is_standard_output(path) else format_of(path), _stream(path)) for path in files]
+    every = [*named, *outputs]
+    if len({each.path if is_standard_output(each.path) else each.path.resolve() for each in every}) < len(every):
+        raise click.UsageError("two options name the same file; give each its own")
+    for each in every:
+        refuse_input(each.path, f"-o {each.path}" if each in named else each.option)
+        refuse_unwritable(each.path)
+    return every
 
 
 def _stream(path: Path) -> Path:

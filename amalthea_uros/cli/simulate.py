@@ -24,7 +24,8 @@ from amalthea_uros.cli.options import (
     workers_options,
 )
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_result
-from amalthea_uros.cli.parameters import OUTPUT_FILE, Parsed, assignment, output_path
+from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, Parsed, assignment, picture_path
+from amalthea_uros.cli.patience import working
 from amalthea_uros.cli.pictures import Pictures
 from amalthea_uros.design.campaign.run import count_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult
@@ -84,7 +85,7 @@ def _labels(text: str) -> tuple[str, ...]:
 @click.option(
     "--trace-window", type=Parsed("FROM..TO", _window), help="Write only the events of this part of the run, e.g. 10ms..20ms."
 )
-@click.option("--gantt", type=OUTPUT_FILE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
+@click.option("--gantt", type=PICTURE, metavar="FILE", help="Draw what all processes do in a part of the run, as SVG.")
 @click.option("--gantt-of", metavar="PROCESS", help="Show the longest response time of this process in --gantt.")
 @click.option(
     "--chain",
@@ -95,14 +96,14 @@ def _labels(text: str) -> tuple[str, ...]:
     "--timeline",
     "timelines",
     multiple=True,
-    type=assignment("PROCESS=FILE", output_path),
+    type=assignment("PROCESS=FILE", picture_path),
     help="Draw the states of a process in a part of the run, as SVG; may be repeated.",
 )
 @click.option(
     "--histogram",
     "histograms",
     multiple=True,
-    type=assignment("NAME=FILE", output_path),
+    type=assignment("NAME=FILE", picture_path),
     help="Draw the response times of a process, the latencies of a chain, or another of its quantities, e.g. "
     "Task.net_execution_time=net.svg; may be repeated.",
 )
@@ -189,9 +190,11 @@ def simulate(
     changed = open_changed(paths, settings, changes, with_bus=with_bus)
     pictures.check(changed.system, options)
     try:
-        result = simulate_changed(changed, options, traces, with_metrics=with_metrics)
+        with working(f"Simulating {time_text(duration)}"):
+            result = simulate_changed(changed, options, traces, with_metrics=with_metrics)
         _show(result, table, outputs)
-        pictures.write(result)
+        with working("Drawing"):
+            pictures.write(result)
     except KeyboardInterrupt:
         click.echo("interrupted: the run is not finished; traces of unfinished runs are not kept", err=True)
         sys.exit(INTERRUPTED)

@@ -22,7 +22,7 @@ from amalthea_uros.cli.options import (
     workers_options,
 )
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_result
-from amalthea_uros.cli.parameters import assignment, output_path
+from amalthea_uros.cli.parameters import assignment, picture_path
 from amalthea_uros.design.campaign.sweeps import SweepResult, plan_sweep
 from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes.change import Change, Sweep
@@ -52,7 +52,7 @@ from amalthea_uros.timing.basics.settings import Settings
     "--picture",
     "pictures",
     multiple=True,
-    type=assignment("OBJECT.QUANTITY=FILE", output_path),
+    type=assignment("OBJECT.QUANTITY=FILE", picture_path),
     help="Draw a result over one or two swept values, as SVG; may be repeated.",
 )
 @workers_options("analyses")

@@ -1,26 +1,23 @@
-"""A task of a synthetic task set: its parameters, as texts with units or as numbers, checked and exact."""
+"""A task of a synthetic task set: its parameters, checked and exact."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from decimal import Decimal
 from fractions import Fraction
 from math import ceil, floor
 from operator import index
-from typing import Literal, TypeAlias, TypeVar
+from typing import Literal, TypeVar
 
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import (
     Communication,
 )
 from amalthea_uros.perf.software import Preemption
-from amalthea_uros.units import TIME, Time, parse_time, time_text
+from amalthea_uros.units import Time, time_text
 
 E = TypeVar("E", Preemption, Communication)
-
-#: Text with a unit, such as "5 ms", or a number, also one of numpy.
-Duration: TypeAlias = str | float | Fraction | Decimal
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,21 +60,21 @@ class TaskParameters:
 def task(
     name: str,
     *,
-    wcet: Duration,
-    period: Duration | None = None,
-    min_distance: Duration | None = None,
-    bcet: Duration = 0,
-    deadline: Duration | None = None,
-    offset: Duration | None = None,
-    jitter: Duration = 0,
+    wcet: TimeLike,
+    period: TimeLike | None = None,
+    min_distance: TimeLike | None = None,
+    bcet: TimeLike = 0,
+    deadline: TimeLike | None = None,
+    offset: TimeLike | None = None,
+    jitter: TimeLike = 0,
     priority: int | None = None,
     core: str = "Core_0",
     preemption: Literal["preemptive", "cooperative", "non-preemptive"] = "preemptive",
     communication: Literal["implicit", "explicit", "LET"] | None = None,
-    critical_sections: Mapping[str, Duration] | None = None,
+    critical_sections: Mapping[str, TimeLike] | None = None,
     unit: str | None = None,
 ) -> TaskParameters:
-    """A task of a `taskset`; times are texts such as "5 ms", or numbers.
+    """A task of a `taskset`; times are texts such as "5 ms", a `Duration`, a `timedelta`, or numbers of one `unit`.
 
     >>> control = task("Control", period="5 ms", wcet="1 ms", priority=3)
     >>> brake = task("Brake", min_distance=20, wcet=2, deadline=10, priority=4, unit="ms")
@@ -91,15 +88,15 @@ def task(
     priority : higher numbers are served first
     critical_sections : resources of the core, and the execution time for which each job holds them, one after the other, at most; it
         is part of the `wcet`. Who holds a resource runs at its ceiling (immediate ceiling protocol)
-    unit : of the numbers; without it, they are whole picoseconds. Fractions of a picosecond are rounded to the safe side
+    unit : of the numbers; without it, only 0 can be a number. Fractions of a picosecond are rounded to the safe side
 
     Raises
     ------
     InvalidArgumentError : a value is wrong.
     """
 
-    def time(what: str, value: Duration, least: Time = 0) -> Time:
-        return _time(f"{name}: {what}", value, unit, ROUNDING[what], least)
+    def time(what: str, value: TimeLike, least: Time = 0) -> Time:
+        return stated_time(f"{name}: {what}", value, unit, ROUNDING[what], least, _REMEDY)
 
     _check_text("the name of a task", name)
     _check_text(f"{name}: the core", core)
@@ -136,6 +133,8 @@ def task(
     return made
 
 
+_REMEDY = "state the unit of all numbers, e.g. unit='ms'"
+
 #: To which side fractions of a picosecond are rounded; no side is the safe one for an offset.
 ROUNDING: Mapping[str, Callable[[Fraction], int]] = {
     "period": floor,
@@ -149,41 +148,14 @@ ROUNDING: Mapping[str, Callable[[Fraction], int]] = {
 }
 
 
-def _time(what: str, value: Duration, unit: str | None, rounding: Callable[[Fraction], int], least: Time) -> Time:
-    if isinstance(value, str):
-        try:
-            found = parse_time(value)
-        except ValueError as error:
-            raise InvalidArgumentError(f"{what}: {error}") from None
-    elif unit is None:
-        found = _whole(what, value, "a time such as '10 ms', whole picoseconds, or a number with its unit=")
-    elif unit not in TIME.units:
-        raise InvalidArgumentError(f"{unit!r} is not a unit of time; known units: {', '.join(TIME.units)}")
-    else:
-        found = rounding(_number(what, value) * TIME.units[unit])
-    if found < least:
-        raise InvalidArgumentError(f"{what}: {time_text(found)} is {'not positive' if least else 'negative'}")
-    return found
-
-
-def _number(what: str, value: object) -> Fraction:
-    """The number that somebody wrote: 0.1 is a tenth, and not the nearest binary fraction."""
-    try:
-        if isinstance(value, bool):
-            raise TypeError
-        return Fraction(value if isinstance(value, Fraction | Decimal) else str(value))
-    except (OverflowError, ValueError, TypeError, ZeroDivisionError):
-        raise InvalidArgumentError(f"{what}: expected a finite number, not {value!r}") from None
-
-
-def _whole(what: str, value: object, expected: str = "a whole number") -> int:
+def _whole(what: str, value: object) -> int:
     """An integer, also of numpy."""
     try:
         if isinstance(value, bool):
             raise TypeError
         return index(value)  # type: ignore[arg-type]
     except TypeError:
-        raise InvalidArgumentError(f"{what}: expected {expected}, not {value!r}") from None
+        raise InvalidArgumentError(f"{what}: expected a whole number, not {value!r}") from None
 
 
 def _check_text(what: str, value: object) -> None:

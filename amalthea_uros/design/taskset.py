@@ -11,7 +11,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from amalthea_uros._internal.similar import did_you_mean
-from amalthea_uros.design.task_parameters import ROUNDING, Duration, TaskParameters, task
+from amalthea_uros.design.stated_times import TimeLike
+from amalthea_uros.design.task_parameters import TaskParameters, task
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import (
     AccessKind,
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: What makes a task of a set: `task(...)`; a period, a worst-case execution time, and perhaps a deadline; or the parameters of `task`.
-TaskLike: TypeAlias = "TaskParameters | tuple[Duration, Duration] | tuple[Duration, Duration, Duration] | Mapping[str, Any]"
+TaskLike: TypeAlias = "TaskParameters | tuple[TimeLike, TimeLike] | tuple[TimeLike, TimeLike, TimeLike] | Mapping[str, Any]"
 
 #: In the theory, jobs wait until their predecessors have ended, however many they are.
 _NO_LIMIT = 2**31 - 1
@@ -134,7 +135,7 @@ def _made(number: int, item: object, unit: str | None) -> TaskParameters:
     values = tuple(item) if isinstance(item, Iterable) and not isinstance(item, str) else ()
     if len(values) not in (2, 3):
         raise TypeError(f"{_EXPECTED}; not {item!r}")
-    return _with_unit(f"T{number}", dict(zip(("period", "wcet", "deadline"), values, strict=False)), unit)
+    return task(f"T{number}", **dict(zip(("period", "wcet", "deadline"), values, strict=False)), unit=unit)
 
 
 def _of_mapping(number: int, values: Mapping[Any, Any], unit: str | None) -> TaskParameters:
@@ -149,17 +150,7 @@ def _of_mapping(number: int, values: Mapping[Any, Any], unit: str | None) -> Tas
         raise InvalidArgumentError(f"{name}: the wcet is missing")
     if isinstance(stated.get("priority"), float) and stated["priority"].is_integer():
         stated["priority"] = int(stated["priority"])  # a column of a data frame in which some values are missing
-    return _with_unit(stated.pop("name"), stated, unit)
-
-
-def _with_unit(name: str, values: Mapping[str, Any], unit: str | None) -> TaskParameters:
-    """The task of values whose numbers must have a unit."""
-    for key in ROUNDING.keys() & values.keys():
-        times = values[key].values() if key == "critical_sections" else (values[key],)
-        number = next((time for time in times if not isinstance(time, str)), None)
-        if unit is None and number is not None:
-            raise InvalidArgumentError(f"{name}: {number!r} has no unit; state the unit of all numbers, e.g. unit='ms'")
-    return task(name, **values, unit=unit)
+    return task(stated.pop("name"), **stated, unit=unit)
 
 
 def _is_missing(value: object) -> bool:

@@ -1,4 +1,4 @@
-"""The repairs of `check --fix` as changes of a text."""
+"""Repairs as changes of a text: those of `check --fix` for models; of descriptions, what a finding suggests."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from itertools import takewhile
 from lsprotocol import types
 
 from amalthea_uros._internal.files import overlaid
+from amalthea_uros.editor.description_fixes import of_description
 from amalthea_uros.editor.diagnostics import SOURCE
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import AmurosError
@@ -28,8 +29,8 @@ def quick_fixes(
     ----------
     kinds : the kinds of actions that the editor asks for, also more general ones; all of them if it does not say
     """
-    if document.is_description:
-        return []  # only its author knows what is meant
+    if document.is_description:  # only its author knows what is meant, so that nothing is repaired unasked
+        return [action for action in of_description(document, diagnostics) if _is_wanted(str(action.kind), kinds)]
     with overlaid(document.contents):
         return [action for action in _actions(document, diagnostics) if _is_wanted(str(action.kind), kinds)]
 

@@ -21,6 +21,7 @@ from amalthea_uros._version import __version__
 from amalthea_uros.editor.diagnostics import diagnostics_of
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.editor.hover import MAX_LENGTH, TOO_LARGE, analysis_of, hover_text
+from amalthea_uros.editor.keys import completions, key_hover
 from amalthea_uros.editor.names import definition_of, names_at, symbols_of
 from amalthea_uros.editor.quick_fixes import FIX_ALL, quick_fixes
 from amalthea_uros.editor.worker import Worker
@@ -122,7 +123,7 @@ class AmurosServer(LanguageServer):
 def create_server() -> AmurosServer:
     """The server with all its features."""
     server = AmurosServer()
-    for register in (_texts, _hover, _actions, _names):
+    for register in (_texts, _hover, _completion, _actions, _names):
         register(server)
     return server
 
@@ -158,6 +159,9 @@ def _hover(server: AmurosServer) -> None:
 
 
 async def _hover_at(server: AmurosServer, known: OpenText, position: types.Position) -> types.Hover | None:
+    meaning = await server.checks.run(partial(key_hover, known.document, position))
+    if meaning is not None:
+        return meaning
     names = list(names_at(known.document, position))
     if not names:
         return None
@@ -180,6 +184,12 @@ async def _hover_at(server: AmurosServer, known: OpenText, position: types.Posit
 
 def _shown(text: str, where: types.Range | None = None) -> types.Hover:
     return types.Hover(contents=types.MarkupContent(types.MarkupKind.Markdown, text), range=where)
+
+
+def _completion(server: AmurosServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION)
+    async def completion(params: types.CompletionParams) -> list[types.CompletionItem] | None:
+        return await _of_text(server, params.text_document.uri, lambda document: completions(document, params.position))
 
 
 def _actions(server: AmurosServer) -> None:

@@ -43,7 +43,12 @@ class FindingGroup:
     def shown(self) -> Finding:
         """The finding that says most, with the highest severity of the group."""
         first = self.same[0]
-        return replace(first, severity=worst((*self.same, *self.consequences)) or first.severity)
+        return replace(first, severity=worst(self.members) or first.severity)
+
+    @property
+    def members(self) -> tuple[Finding, ...]:
+        """All findings of the group."""
+        return (*self.same, *self.consequences)
 
     @property
     def also(self) -> tuple[str, ...]:

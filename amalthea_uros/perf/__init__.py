@@ -128,7 +128,6 @@ from amalthea_uros.perf.mapping import Mapping as Mapping
 from amalthea_uros.perf.mapping import Placement as Placement
 from amalthea_uros.perf.mapping import TaskAllocation as TaskAllocation
 from amalthea_uros.perf.named import Named as Named
-from amalthea_uros.perf.os import Duration as Duration
 from amalthea_uros.perf.os import InterruptController as InterruptController
 from amalthea_uros.perf.os import IsrOverhead as IsrOverhead
 from amalthea_uros.perf.os import OperatingSystem as OperatingSystem
@@ -175,3 +174,4 @@ from amalthea_uros.perf.stimuli import Stimulus as Stimulus
 from amalthea_uros.perf.stimuli import Synthetic as Synthetic
 from amalthea_uros.perf.stimuli import VariableRate as VariableRate
 from amalthea_uros.perf.system import System as System
+from amalthea_uros.units import Duration as Duration

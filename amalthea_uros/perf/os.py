@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from amalthea_uros.perf.activities import Demand, Execute, LabelAccess, Protection
 from amalthea_uros.perf.named import Brief, Named
-from amalthea_uros.units import Time
+from amalthea_uros.units import Duration, Time
 
 
 class Policy(StrEnum):
@@ -44,13 +44,7 @@ SERVERS = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Duration:
-    """A time as the value of a parameter, which could also be a number."""
-
-    time: Time
-
-
+#: A time is a `Duration` here, because the value could also be a number.
 ParameterValue: TypeAlias = bool | int | float | str | Duration
 
 

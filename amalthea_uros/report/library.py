@@ -9,12 +9,12 @@ from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.design.changes.change import Changes
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.report import formats
 from amalthea_uros.services.files import save_text
 from amalthea_uros.services.report import ReportContent, compile_report
-from amalthea_uros.services.subject import Subject, time_of
+from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def report(
     settings: Settings | None = None,
     *,
     changes: Changes = (),
-    duration: str | Time | None = None,
+    duration: TimeLike | None = None,
     seed: int = 1,
     with_simulation: bool = True,
     with_bus: bool = False,
@@ -76,7 +76,7 @@ def report(
     Parameters
     ----------
     changes : such as `{"Executor_Task.period": "2 ms"}`, or texts as for `amuros report --set`
-    duration : of the simulation, such as "1 s", or picoseconds; None: so long that the work is limited
+    duration : of the simulation, such as "1 s"; None: so long that the work is limited
     with_bus : with the messages on the CAN bus of an `app.yaml`
     title : None: the names of the files
     date : shown below the title; without one, the same input gives the same report
@@ -91,7 +91,7 @@ def report(
         changes=changes,
         with_bus=with_bus,
         with_simulation=with_simulation,
-        duration=None if duration is None else time_of(duration),
+        duration=None if duration is None else stated_time("the duration", duration),
         seed=seed,
         title=title,
         date=date,

@@ -31,6 +31,7 @@ from amalthea_uros.services.diff import DiffResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
 from amalthea_uros.services.migrate import MigrationResult
 from amalthea_uros.services.optimize import Optimization
+from amalthea_uros.services.own_methods import MethodBounds
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.simulate.observations import ChainObservation, ProcessObservation, RunnableObservation
@@ -175,6 +176,19 @@ def _priorities(result: Proposal) -> Iterator[Record]:
         }
 
 
+def _method_rows(result: MethodBounds) -> Iterator[Record]:
+    for row in result.rows:
+        yield {
+            "method": row.method,
+            "object": row.object,
+            "quantity": row.quantity,
+            "value_ps": row.value,
+            "analyzed_ps": row.analyzed,
+            "claim": row.claim and str(row.claim),
+            "comparison": str(row.standing),
+        }
+
+
 #: Results with a row for each of their parts, and the parts: rows, or objects with rows of their own.
 _PARTS: Mapping[type, Callable[[Any], Iterable[Any]]] = {
     Analysis: lambda result: [result.processes],
@@ -200,6 +214,7 @@ _PARTS: Mapping[type, Callable[[Any], Iterable[Any]]] = {
     MetaCheck: lambda result: result.findings,
     CheckResult: lambda result: json_of(result)["findings"],
     MigrationResult: lambda result: result.changes,
+    MethodBounds: _method_rows,
     DiffResult: lambda result: result.changes,
 }
 

@@ -40,6 +40,7 @@ class CheckResult(Brief, Shown):
     presentation : the same as they are shown: one for each flaw, and one line about each of these tools
     fail_on : minimum severity at which the check fails
     is_readable : whether every file could be checked
+    with_details : whether files for programs and baselines have all findings, and not one for each flaw
     rules : ids of the rules that were checked, none if no file could be
     """
 
@@ -49,6 +50,7 @@ class CheckResult(Brief, Shown):
     fail_on: Severity
     is_readable: bool
     rules: tuple[str, ...]
+    with_details: bool = False
 
     @property
     def fails(self) -> bool:
@@ -96,6 +98,7 @@ def check_files(
     *,
     each: bool = False,
     only_amuros: bool = False,
+    with_details: bool = False,
 ) -> CheckResult:
     """Check an `app.yaml`, or AMALTHEA models; problems found while reading the files are also reported.
 
@@ -103,6 +106,8 @@ def check_files(
     ----------
     settings : what is not given is taken from the project of the first file
     each : every file is a model of its own; otherwise the AMALTHEA files are one model together
+    with_details : in SARIF, JUnit and baselines, also what follows from other findings, and what only counts for target tools that
+        nobody asked for
     only_amuros : skip YAML files that do not describe an application, i.e. that have no key `amuros` at their top level
 
     Raises
@@ -125,7 +130,7 @@ def check_files(
         except ReadError as error:
             found += error.findings
             is_readable &= not is_unreadable(error.findings)
-    findings = not_suppressed(found, selection, accepted)
+    findings = not_suppressed(found, selection, settings, accepted)
     return CheckResult(
         paths=files,
         findings=findings,
@@ -133,6 +138,7 @@ def check_files(
         fail_on=settings.fail_on or Severity.ERROR,
         is_readable=is_readable,
         rules=tuple(rules) if is_checked else (),
+        with_details=with_details,
     )
 
 
@@ -147,17 +153,17 @@ def check_input(opened: ModelInput, folder: Path) -> Presentation:
     settings = CheckSettings().over(project_settings(folder))
     selection = selection_of(settings)
     found = _check_input(opened, selection.rules())
-    return presented(not_suppressed(found, selection, accepted_by(settings)), selection, settings)
+    return presented(not_suppressed(found, selection, settings, accepted_by(settings)), selection, settings)
 
 
 def write_baseline(result: CheckResult, path: StrPath) -> None:
-    """Write a baseline that accepts all findings of a check.
+    """Write a baseline that accepts the flaws that a check shows, or with details all findings.
 
     Raises
     ------
     WriteError : the file cannot be written.
     """
-    save_text(path, baseline_text(result.findings))
+    save_text(path, baseline_text(result.findings if result.with_details else result.presentation.to_accept))
 
 
 def add_rules(files: Iterable[StrPath]) -> None:

@@ -16,13 +16,13 @@ from amalthea_uros.compare.results import Comparison, Source
 from amalthea_uros.compare.shares import parse_tolerance
 from amalthea_uros.compare.traces import joined
 from amalthea_uros.design.changes.change import Changes
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
 from amalthea_uros.services.inputs import as_paths
-from amalthea_uros.services.subject import Subject, open_changed, time_of
+from amalthea_uros.services.subject import Subject, open_changed
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time
 
 #: What was measured, or the trace to measure.
 Measured: TypeAlias = "Measurement | StrPath | Iterable[StrPath]"
@@ -34,11 +34,11 @@ def compare(
     *,
     tolerance: str | float | Fraction = DEFAULT_TOLERANCE,
     by: Iterable[Source | str] = EVERY_SOURCE,
-    duration: str | Time | None = None,
+    duration: TimeLike | None = None,
     seed: int = 1,
     names: Names | None = None,
-    overheads: Mapping[str, Time] | None = None,
-    uncertainty: Time | None = None,
+    overheads: Mapping[str, TimeLike] | None = None,
+    uncertainty: TimeLike | None = None,
     settings: Settings | None = None,
     changes: Changes = (),
 ) -> Comparison:
@@ -52,10 +52,10 @@ def compare(
     measured : what `measure` returned, or the files of a trace
     tolerance : of deviations, as a share of the measurement: "20 %" or 0.2
     by : "analysis", "simulation", or both
-    duration : of the simulation, such as "1 s", or picoseconds; None: as long as the measurement
+    duration : of the simulation, such as "1 s"; None: as long as the measurement
     names : which measured series is what in the model, where the names differ
-    overheads : process -> picoseconds that are added to its predicted execution and response times; "" stands for all others
-    uncertainty : by how many picoseconds a measured time may be wrong; None: by less than a step of its time stamps
+    overheads : process -> time that is added to its predicted execution and response times; "" stands for all others
+    uncertainty : by how much a measured time may be wrong; None: by less than a step of its time stamps
 
     Raises
     ------
@@ -65,11 +65,11 @@ def compare(
     options = CompareOptions(
         tolerance=parse_tolerance(tolerance),
         sources=_sources(by),
-        duration=None if duration is None else time_of(duration),
+        duration=None if duration is None else stated_time("the duration", duration),
         seed=seed,
         names=names or Names(),
-        overheads=overheads or {},
-        uncertainty=uncertainty,
+        overheads={of: stated_time("the overhead", time) for of, time in (overheads or {}).items()},
+        uncertainty=None if uncertainty is None else stated_time("the uncertainty", uncertainty),
     )
     return compare_files(subject, measured, options, settings=settings, changes=changes)
 

@@ -10,14 +10,14 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.compare.measured.columns import parse_column, parse_unit, parse_valid_rows
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.markers import parse_marker
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.services.inputs import as_paths
-from amalthea_uros.services.subject import Subject, open_system, time_of
-from amalthea_uros.units import Time
+from amalthea_uros.services.subject import Subject, open_system
 
 T = TypeVar("T")
 
@@ -34,8 +34,8 @@ def measure(
     channel: str | None = None,
     baseline: str | Mapping[str, str] | None = None,
     baseline_from: StrPath | None = None,
-    period: str | Time | None = None,
-    window: tuple[str | Time, str | Time | None] = (0, None),
+    period: TimeLike | None = None,
+    window: tuple[TimeLike, TimeLike | None] = (0, None),
     select: Iterable[str] = (),
     model: Subject | None = None,
     columns: Iterable[str] = (),
@@ -82,8 +82,11 @@ def measure(
         channel=channel,
         baselines={} if baseline is None else {"": baseline} if isinstance(baseline, str) else dict(baseline),
         baseline_from=None if baseline_from is None else Path(baseline_from),
-        period=None if period is None else time_of(period),
-        window=MeasurementWindow(time_of(window[0]), None if window[1] is None else time_of(window[1])),
+        period=None if period is None else stated_time("the period", period),
+        window=MeasurementWindow(
+            stated_time("the start of the window", window[0]),
+            None if window[1] is None else stated_time("the end of the window", window[1]),
+        ),
         select=tuple(select),
         begins=ModelBegins() if model is None else begins_of(open_system(model).system),
     )

@@ -14,16 +14,16 @@ from amalthea_uros.design.campaign.run import RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep
+from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed, time_of
+from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
 from amalthea_uros.simulate.options import ALL_LABELS, Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.impact import Impact
@@ -106,7 +106,7 @@ def simulate_changed(
 
 def simulate(
     subject: Subject,
-    duration: str | Time,
+    duration: TimeLike,
     *,
     seed: int = 1,
     mode: SimulationMode | str = SimulationMode.SAMPLED,
@@ -124,7 +124,7 @@ def simulate(
     Parameters
     ----------
     subject : as for `analyze`
-    duration : model time, such as "5 min", or picoseconds
+    duration : model time, such as "5 min" or a `Duration`
     mode : how values that vary are chosen: "sampled", "worst", "best" or "average"
     changes : such as "Executor_Task.period=2ms"
     trace : keep the events of the whole run in memory, about 50 bytes for each
@@ -135,17 +135,19 @@ def simulate(
     ------
     ReadError, WriteError, InvalidArgumentError : as for `simulate_files`.
     """
+    from amalthea_uros.simulate.results import RunOrigin
     from amalthea_uros.trace.sinks import EventRecorder
 
     changed = open_changed(subject, settings, changes)
-    time, recorder = time_of(duration), EventRecorder()
+    time, recorder = stated_time("the duration", duration), EventRecorder()
     sinks: list[OpenSink] = [*_writers(trace_paths), *([recorder] if trace else [])]
     traced = (0, time) if sinks else None
     if mode not in tuple(SimulationMode):
         raise InvalidArgumentError(f"unknown mode {mode!r}; expected one of {', '.join(SimulationMode)}")
     options = Options(duration=time, seed=seed, mode=SimulationMode(mode), traced=traced, labels=tuple(labels))
     result = _simulated(changed, options, sinks)
-    return replace(result.simulation, findings=result.findings, trace=recorder.table if trace else None)
+    origin = RunOrigin(result.system, result.options)
+    return replace(result.simulation, findings=result.findings, trace=recorder.table if trace else None, origin=origin)
 
 
 def simulate_campaign(

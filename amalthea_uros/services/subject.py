@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from operator import index
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -21,7 +20,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.services.inputs import as_paths, is_one_description
 from amalthea_uros.timing.activation.releases import sources
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time, parse_time
+from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Model
@@ -158,17 +157,6 @@ def as_model(subject: object) -> Model | None:
     from amalthea_uros.metamodel.model import Model
 
     return subject if isinstance(subject, Model) else None
-
-
-def time_of(duration: str | Time) -> Time:
-    """A duration in picoseconds; InvalidArgumentError if it is no time."""
-    try:
-        return parse_time(duration) if isinstance(duration, str) else index(duration)
-    except TypeError:
-        message = f"the duration must be a time such as '1 s', or whole picoseconds, not {duration!r}"
-        raise InvalidArgumentError(message) from None
-    except ValueError as error:
-        raise InvalidArgumentError(f"the duration {error}") from None
 
 
 def require_settings(settings: Settings, system: System) -> None:

@@ -22,10 +22,11 @@ from amalthea_uros.simulate.observations import (
     RequirementObservation,
     RunnableObservation,
 )
-from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:
+    from amalthea_uros.perf.system import System
     from amalthea_uros.trace.table import EventTable
 
 #: A cell of a table of runs.
@@ -35,6 +36,14 @@ Cell: TypeAlias = int | float | str | None
 Judged: TypeAlias = ProcessObservation | RequirementObservation
 #: The error of a run in which no process executed anything.
 IDLE = "nothing was executed"
+
+
+@dataclass(frozen=True, slots=True)
+class RunOrigin:
+    """What was simulated, and how."""
+
+    system: System
+    options: Options
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -52,6 +61,7 @@ class Simulation(Shown):
     assumptions : on which the run is based
     findings : what the simulation does not take into account
     trace : the events, if they were wanted
+    origin : what pictures need to repeat a part of the run; kept by `amuros.simulate`
     """
 
     duration: Time
@@ -69,6 +79,7 @@ class Simulation(Shown):
     assumptions: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     trace: EventTable | None = field(default=None, compare=False)
+    origin: RunOrigin | None = field(default=None, compare=False)
 
     def __getitem__(self, process: str) -> ProcessObservation:
         """The observations of a process by its name.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -14,6 +13,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, YamlText
+from amalthea_uros.spec.schema_places import Schema, inner_schemas, nearest_places, schema_of, variants
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.units import shortened
 
@@ -93,6 +93,10 @@ def finding_of(mistake: Mistake, source: YamlText, kind: type[DescriptionSection
             return Finding("YML011", Severity.ERROR, f"missing key {mistake.key!r}", source.location(value.place))
     message, help_text = _sentence(mistake.details, value)
     return Finding("YML012", Severity.ERROR, f"{_owner(mistake)}{message}", source.location(value.place), help_text)
+
+
+#: A key with more places than this says little.
+_MOST_PLACES = 3
 
 
 def intended_key(mistake: Mistake, kind: type[DescriptionSection], similarity: float = _SIMILAR) -> str | None:
@@ -194,11 +198,16 @@ def _correction(details: ErrorDetails, node: Node) -> str:
 
 
 def _advice(mistake: Mistake, kind: type[DescriptionSection]) -> str:
-    """What to do about an unknown key."""
+    """The help line for an unknown key."""
     if _AFTER_COMMA.fullmatch(mistake.key):
         return "A comma separates keys; write decimals with a point, e.g. 1.5 ms."
-    intended = intended_key(mistake, kind)
-    if intended:
+    if certain := intended_key(mistake, kind, CERTAIN):
+        return f"Did you mean {certain!r}?"
+    elsewhere = nearest_places(mistake.key, mistake.details["loc"][:-1], kind)
+    if 0 < len(elsewhere) <= _MOST_PLACES:
+        places = " or ".join(f"'{'.'.join(place)}'" if place else "the top level" for place in elsewhere)
+        return f"{mistake.key!r} belongs in {places}."
+    if intended := intended_key(mistake, kind):
         return f"Did you mean {intended!r}?"
     known = _keys(mistake.details["loc"][:-1], kind)
     return f"Known keys: {', '.join(known)}." if known else ""
@@ -206,37 +215,11 @@ def _advice(mistake: Mistake, kind: type[DescriptionSection]) -> str:
 
 def _keys(loc: tuple[int | str, ...], kind: type[DescriptionSection]) -> list[str]:
     """The keys that the JSON schema allows at a place."""
-    schema = _schema(kind)
-    level = [schema]
+    whole = schema_of(kind)
+    level: list[Schema] = [whole]
     for part in loc:
-        found = [inner for one in level for inner in _inner(one, part, schema)]
-        level = found or level
-    return [key for one in level for variant in _variants(one, schema) for key in variant.get("properties", ())]
-
-
-@cache
-def _schema(kind: type[DescriptionSection]) -> dict[str, Any]:
-    return kind.model_json_schema(by_alias=True)
-
-
-def _variants(schema: dict[str, Any], whole: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """A schema and its alternatives."""
-    if "$ref" in schema:
-        yield from _variants(whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
-        return
-    yield schema
-    for inner in schema.get("anyOf", ()):
-        yield from _variants(inner, whole)
-
-
-def _inner(schema: dict[str, Any], part: int | str, whole: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    for variant in _variants(schema, whole):
-        if isinstance(part, int):
-            yield from filter(None, [variant.get("items")])
-        else:
-            inner = variant.get("properties", {}).get(part)
-            by_name = next(iter(variant.get("patternProperties", {}).values()), None)
-            yield from filter(None, [inner or by_name])
+        level = [inner for one in level for inner in inner_schemas(one, part, whole)] or level
+    return [key for one in level for variant in variants(one, whole) for key in variant.get("properties", ())]
 
 
 #: Similarity of words from which on one is taken for a misspelling of the other.

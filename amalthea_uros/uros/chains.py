@@ -89,7 +89,11 @@ class ChainBuilder:
         names = self._path_events(section, section.path or [], lambda index: section.location("path", index))
         if names is None:
             return None
-        segments = tuple(perf.Segment(stimulus=first, response=then) for first, then in pairwise(names))
+        is_one_each = len(names) == len(section.path or [])  # a message has several events
+        segments = tuple(
+            perf.Segment(stimulus=first, response=then, origin=section.location("path", index if is_one_each else None))
+            for index, (first, then) in enumerate(pairwise(names), start=1)
+        )
         items = perf.Sequence(segments) if len(segments) > 1 else None
         return perf.EventChain(name=section.name, stimulus=names[0], response=names[-1], items=items, origin=section.location())
 
@@ -318,7 +322,10 @@ class ChainBuilder:
             perf.Segment(
                 stimulus=names[0],
                 response=names[-1],
-                items=perf.Sequence(tuple(perf.Segment(stimulus=first, response=then) for first, then in pairwise(names))),
+                items=perf.Sequence(
+                    tuple(perf.Segment(stimulus=first, response=then, origin=place) for first, then in pairwise(names))
+                ),
+                origin=place,
             )
             for names in found
         )

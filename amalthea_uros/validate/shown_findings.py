@@ -23,18 +23,19 @@ def accepted_by(settings: CheckSettings) -> Collection[str]:
         raise InvalidArgumentError(str(error)) from None
 
 
-def not_suppressed(found: Sequence[Finding], selection: Selection, accepted: Collection[str]) -> tuple[Finding, ...]:
+def not_suppressed(
+    found: Sequence[Finding], selection: Selection, settings: CheckSettings, accepted: Collection[str]
+) -> tuple[Finding, ...]:
     """The findings that are not suppressed in any way.
 
     Parameters
     ----------
     accepted : fingerprints of findings that a baseline accepts
     """
-    findings = tuple(
-        finding
-        for finding in found
-        if not (finding.rule in selection.ignored or is_suppressed(finding) or fingerprint(finding) in accepted)
-    )
+    findings = tuple(finding for finding in found if not (finding.rule in selection.ignored or is_suppressed(finding)))
+    if accepted:
+        of_flaws = presented(findings, selection, settings).accepted(accepted)
+        findings = tuple(each for each in findings if each not in of_flaws and fingerprint(each) not in accepted)
     return findings if len(findings) == len(found) else _without_repeated(findings, found)
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.entry_points import installed, instances_in, package_of
 from amalthea_uros._internal.files import FileError, read_text
 from amalthea_uros._internal.limits import RULES_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUP = "amuros.rules"
+#: The list of a module that names its rules.
+_LIST = "RULES"
 
 #: Ids are written in lists with commas, also in comments of a line.
 _ID = re.compile(r"[A-Za-z][\w./-]*")
@@ -41,7 +44,7 @@ def rules_of_file(path: Path) -> list[ModelRule]:
     sys.modules[module.__name__] = module
     try:
         exec(compile(text, str(path), "exec"), module.__dict__)
-        return list(_rules_in(module))
+        return list(instances_in(module, ModelRule, _LIST))
     except (Exception, SystemExit) as error:
         raise _failed(error, path, text) from None
 
@@ -62,9 +65,7 @@ def installed_rules() -> list[ModelRule]:
     ------
     ReadError : those of a package cannot be loaded.
     """
-    from importlib.metadata import entry_points
-
-    return [rule for entry in sorted(entry_points(group=GROUP)) for rule in _rules_of_package(entry)]
+    return [rule for entry in installed(GROUP) for rule in _rules_of_package(entry)]
 
 
 def check_id(rule: ModelRule, taken: Iterable[str]) -> None:
@@ -84,27 +85,10 @@ def check_id(rule: ModelRule, taken: Iterable[str]) -> None:
 
 def _rules_of_package(entry: EntryPoint) -> Iterable[ModelRule]:
     try:
-        return list(_rules_in(entry.load()))
+        return list(instances_in(entry.load(), ModelRule, _LIST))
     except (Exception, SystemExit) as error:
-        package = entry.dist.name if entry.dist is not None else entry.value
-        message = f"the rules of the package {package!r} cannot be loaded: {type(error).__name__}: {error}"
+        message = f"the rules of the package {package_of(entry)!r} cannot be loaded: {type(error).__name__}: {error}"
         raise _broken(message, None) from None
-
-
-def _rules_in(source: object) -> Iterator[ModelRule]:
-    """The rules of a module, of a list, or a single one."""
-    if isinstance(source, ModelRule):
-        yield source
-        return
-    if isinstance(source, ModuleType):
-        named = (value for value in vars(source).values() if isinstance(value, ModelRule))
-        source = getattr(source, "RULES", None) or list(dict.fromkeys(named))
-    if not isinstance(source, list | tuple) or not source:
-        raise TypeError("there is no ModelRule, and no list RULES of some")
-    for rule in source:
-        if not isinstance(rule, ModelRule):
-            raise TypeError(f"RULES must contain instances of ModelRule, not {type(rule).__name__}")
-        yield rule
 
 
 def _location(path: Path, text: str, line: int | None, column: int | None = None) -> Location:

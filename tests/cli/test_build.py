@@ -172,7 +172,7 @@ def test_another_platform(advanced, tmp_path):
     assert amuros("build", advanced).returncode == 0
     model = amalthea_uros.load(advanced.with_suffix(".amxmi"))
     assert [ticks.default.value for ticks in model.all(Ticks)] == [12 * 80, 13 * 80, 2 * 80, 4 * 80]
-    assert amuros("build", advanced, "--platform", "bodas-rc18-12-40").returncode == 0
+    assert amuros("build", advanced, "--board", "bodas-rc18-12-40").returncode == 0
     assert len(list(amalthea_uros.load(advanced.with_suffix(".amxmi")).all(ProcessingUnit))) == 4
     (tmp_path / "mine.yaml").write_text("amuros: 1\nplatform: mine\nhardware: {frequency: 80}\n")
     run = amuros("build", advanced)

@@ -38,7 +38,8 @@ def test_sarif_is_valid(model):
     (part,) = log["runs"]
     rules = part["tool"]["driver"]["rules"]
     assert {result["level"] for result in part["results"]} == {"error", "warning", "note"}
-    assert len(part["results"]) == len(found(model)["findings"])
+    shown = [finding for finding in found(model)["findings"] if finding["part_of"] is None]
+    assert [result["ruleId"] for result in part["results"]] == [finding["rule"] for finding in shown]
     for result in part["results"]:
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
         place = result["locations"][0]["physicalLocation"]["artifactLocation"]
@@ -46,6 +47,19 @@ def test_sarif_is_valid(model):
         assert place["uriBaseId"] in part["originalUriBaseIds"]
     fingerprints = [result["partialFingerprints"]["object/v1"] for result in part["results"]]
     assert len(set(fingerprints)) == len(fingerprints)
+
+
+def test_with_details_there_are_all_findings(model):
+    run = amuros("check", model, *ALL, "--details", "--output", "sarif", cwd=model.parent.parent)
+    assert len(json.loads(run.stdout)["runs"][0]["results"]) == len(found(model)["findings"])
+
+
+def test_junit_has_what_the_text_shows(model, tmp_path):
+    path = tmp_path / "result.xml"
+    amuros("check", model, *ALL, "--output", f"junit={path}")
+    (suite,) = JUnitXml.fromfile(str(path))
+    shown = {finding["rule"] for finding in found(model)["findings"] if finding["part_of"] is None}
+    assert {case.name for case in suite if case.result or case.system_out} == shown
 
 
 def test_a_file_outside_of_the_current_folder_has_an_absolute_uri(model, tmp_path):
@@ -59,7 +73,7 @@ def test_a_file_outside_of_the_current_folder_has_an_absolute_uri(model, tmp_pat
 
 def test_junit_is_read_as_ci_systems_do(model, tmp_path):
     path = tmp_path / "result.xml"
-    amuros("check", model, *ALL, "--output", f"junit={path}")
+    amuros("check", model, *ALL, "--details", "--output", f"junit={path}")
     findings = found(model)["findings"]
     (suite,) = JUnitXml.fromfile(str(path))
     cases = {case.name: case for case in suite}

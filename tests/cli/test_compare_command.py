@@ -102,6 +102,7 @@ def test_wrong_options_are_refused(options, message, watch):
 
 def test_a_picture_does_not_replace_a_file_that_is_read(watch):
     path = watch(16)
+    path = path.rename(path.with_suffix(".svg"))
     run = amuros("compare", SIMPLE, path, "--picture", path)
     assert run.returncode == 2
     assert "would replace a file that is read" in run.stderr

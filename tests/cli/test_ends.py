@@ -32,7 +32,7 @@ WITH_A_FILE = {
     "measure": ["{}", "--start", "1", "--end", "2"],
     "migrate": ["{}"],
     "optimize": ["{}"],
-    "report": ["{}", "-o", "-", "--format", "md"],
+    "report": ["{}", "--output", "markdown"],
     "simulate": ["{}", "--duration", "1ms"],
     "sweep": ["{}", "--sweep", "a.period=1ms"],
 }

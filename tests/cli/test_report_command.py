@@ -20,22 +20,22 @@ def test_the_suffix_says_the_format(tmp_path):
 
 
 def test_standard_output_has_the_format_that_is_asked_for():
-    run = amuros("report", ADVANCED, "--no-simulation", "-o", "-", "--format", "markdown")
+    run = amuros("report", ADVANCED, "--no-simulation", "--output", "markdown")
     assert run.stdout.startswith("## ")
     assert "Observed" not in run.stdout
 
 
 def test_the_summary_is_that_of_the_sample():
-    run = amuros("report", ADVANCED, "--duration", "1s", "-o", "-", "--format", "markdown")
+    run = amuros("report", ADVANCED, "--duration", "1s", "--output", "markdown")
     assert run.stdout == (ROOT / "tests" / "report" / "bodas-test-advanced.md").read_text()
 
 
 def test_changes_are_reported_with_their_impact():
-    run = amuros("report", ADVANCED, "--no-simulation", *OVERLOADED, "-o", "-", "--format", "markdown")
+    run = amuros("report", ADVANCED, "--no-simulation", *OVERLOADED, "--output", "markdown")
     assert run.returncode == 1
-    assert "| Control_Function.execution_time | 4 ticks | 2000 ticks |" in run.stdout
+    assert "| Control_Function.execution_time | 4 us | 2 ms |" in run.stdout
     assert "### Before and after" in run.stdout
-    assert "Control_Function.execution_time: 4 ticks -> 2000 ticks" in run.stderr
+    assert "Control_Function.execution_time: 4 us -> 2 ms" in run.stderr
 
 
 @pytest.mark.parametrize(("fail_on", "code"), [("missed", 1), ("never", 0)])
@@ -47,11 +47,11 @@ def test_the_exit_code_follows_the_closing_line(tmp_path, fail_on, code):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ((), "Missing option '-o'"),
+        ((), "add -o FILE, e.g. -o report.html, or --output FORMAT"),
         (("-o", "r.pdf"), "expected one of .html, .md, .mmd, .dot"),
         (("-o", "no/such/folder/r.html"), "No such file or directory"),
         (("-o", "r.md", "-o", "r.md"), "the same file"),
-        (("-o", "r.md", "--format", "html"), "--format is the format of standard output"),
+        (("-o", "r.md", "--format", "html"), "No such option '--format': write --output FORMAT"),
         (("-o", "r.md", "--set", "Nobody.period=1ms"), "unknown object 'Nobody'"),
         (("-o", "r.md", "--duration", "0s"), "greater than zero"),
     ],

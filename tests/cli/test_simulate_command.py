@@ -370,8 +370,8 @@ def test_the_library_takes_texts_and_systems(run):
     found = simulate(open_system([ADVANCED]).system, "10 ms", seed=7, mode="worst", changes=["Control_Function.period=2ms"])
     assert (found.duration, found.seed, found.mode) == (10 * MS, 7, "worst")
     assert found["Control_Function"].jobs == 5
-    assert simulate(ADVANCED, 10 * MS)["Control_Function"].jobs == 10
-    assert simulate([ADVANCED.with_suffix(".amxmi")], 10 * MS)["Control_Function"].jobs == 10
+    assert simulate(ADVANCED, "10 ms")["Control_Function"].jobs == 10
+    assert simulate([ADVANCED.with_suffix(".amxmi")], "10 ms")["Control_Function"].jobs == 10
     with pytest.raises(ValueError, match="'5' has no unit"):
         simulate(ADVANCED, "5")
     with pytest.raises(ValueError, match="unknown mode 'fast'; expected one of sampled, worst, best, average"):

@@ -114,7 +114,7 @@ def test_diff_of_descriptions_in_words_of_timing(tmp_path):
     assert "period: 1 ms, execution_time: 4 us" in " ".join(text.split()) or "4 us" in text
     new.write_text(text.replace("4 us", "6 us"))
     found = amuros("diff", old, new, "--impact")
-    assert "  Control_Function_Callback: execution time 4 ticks -> 6 ticks" in found.stdout.splitlines()
+    assert "  Control_Function_Callback: execution time 4 us -> 6 us" in found.stdout.splitlines()
     assert any(
         line.startswith("Control_Function worst response") and " worse " in f"{line} "
         for line in section(found.stdout, "Before and after the change")
@@ -125,9 +125,7 @@ def test_diff_of_descriptions_in_words_of_timing(tmp_path):
             "kind": "changed",
             "class": "runnable",
             "object": "Control_Function_Callback",
-            "values": [
-                {"key": "Control_Function_Callback.execution_time", "from": "4 ticks", "to": "6 ticks", "consequence": False}
-            ],
+            "values": [{"key": "Control_Function_Callback.execution_time", "from": "4 us", "to": "6 us", "consequence": False}],
         }
     ]
     assert content["impact"]["rows"]
@@ -136,8 +134,8 @@ def test_diff_of_descriptions_in_words_of_timing(tmp_path):
 def test_diff_names_added_and_removed_tasks_with_their_timing():
     found = amuros("diff", SAMPLES / "bodas-test-advanced.yaml", SAMPLES / "drive-and-lift.yaml")
     lines = found.stdout.splitlines()
-    assert "  + task Control_Lift (every 20 ms, 30000..75000 ticks, priority 4, Core_1)" in lines
-    assert "  - task Message_Factor (every 20 ms, 2 ticks, priority 1, Core_0)" in lines
+    assert "  + task Control_Lift (every 20 ms, 100 us..250 us, priority 4, Core_1)" in lines
+    assert "  - task Message_Factor (every 20 ms, 2 us, priority 1, Core_0)" in lines
 
 
 def test_diff_of_equal_models_has_no_timing():

@@ -132,11 +132,11 @@ VALUES = {
     "B.deadline=1ms": ("4 ms", "1 ms"),
     "A.preemption=non-preemptive": ("preemptive", "non-preemptive"),
     "A.activation_limit=3": ("1", "3"),
-    "RA.execution_time=1 tick": ("4 ticks", "1 ticks"),
-    "RA.execution_time=7ticks..9ticks": ("4 ticks", "7..9 ticks"),
-    "A.execution_time=12us": ("4 ticks", "12 ticks"),  # 1 MHz
-    "Own.execution_time=12us": ("10 ticks", "36 ticks"),  # 3 MHz
-    "I.execution_time=1us": ("3 ticks", "1 ticks"),
+    "RA.execution_time=1 tick": ("4 us", "1 us"),
+    "RA.execution_time=7ticks..9ticks": ("4 us", "7 us..9 us"),
+    "A.execution_time=12us": ("4 us", "12 us"),  # 1 MHz
+    "Own.execution_time=12us": ("3.33333333333 us", "12 us"),  # 3 MHz
+    "I.execution_time=1us": ("3 us", "1 us"),
     "C0.frequency=300MHz": ("1 MHz", "300 MHz"),
     "fast.frequency=2MHz": ("3 MHz", "2 MHz"),
     "A.core=C1": ("C0", "C1"),
@@ -168,6 +168,13 @@ def test_a_change_keeps_all_other_values(change):
         if target.object == name and target.key in (key, related.get(key), "controller"):
             continue
         if {name, target.object} in ({"Own", "own"}, {"A", "RA"}):  # the same stimulus, the same demand
+            continue
+        if target.key == "execution_time" and key in (
+            "frequency",
+            "core",
+            "scheduler",
+            "controller",
+        ):  # the same ticks take another time
             continue
         (difference,) = describe(after.system, after.settings, [target])
         assert difference.before == before, other
@@ -246,26 +253,29 @@ def test_a_shared_stimulus_to_which_an_event_refers_is_not_copied():
 
 def test_a_time_is_rounded_to_ticks_outwards():
     # 1 us is 3 ticks of 3 MHz: 0.5 us are 1.5 ticks.
-    for text, before_and_after in {
-        "0.5us": ("10 ticks", "2 ticks"),
-        "0.5us..1.5us": ("10 ticks", "1..5 ticks"),
-        "0.5us..0.5us": ("10 ticks", "2 ticks"),
+    for text, after in {
+        "0.5us": "666.666666667 ns",  # 2 ticks
+        "0.5us..1.5us": "333.333333333 ns..1.66666666667 us",  # 1..5 ticks
+        "0.5us..0.5us": "666.666666667 ns",
     }.items():
-        assert differences(f"Own.execution_time={text}") == [before_and_after]
+        assert differences(f"Own.execution_time={text}") == [("3.33333333333 us", after)]
 
 
 def test_times_are_converted_at_the_frequencies_after_all_changes():
     changes = ["A.execution_time=12us", "A.scheduler=S1", "fast.frequency=2MHz", "C2.frequency=2MHz"]
     for order in (changes, changes[::-1]):
         found = {change.partition("=")[0]: each for change, each in zip(order, differences(*order), strict=True)}
-        assert found["A.execution_time"] == ("4 ticks", "24 ticks")
+        assert found["A.execution_time"] == ("4 us", "12 us")
 
 
 def test_cores_with_different_frequencies_need_ticks():
     message = "'Own' is executed on cores with different frequencies; write its execution time in ticks"
     with pytest.raises(InvalidArgumentError, match=message):
         differences("C2.frequency=2MHz", "Own.scheduler=S1", "Own.execution_time=12us")
-    assert differences("C2.frequency=2MHz", "Own.scheduler=S1", "Own.execution_time=12ticks")[-1] == ("10 ticks", "12 ticks")
+    assert differences("C2.frequency=2MHz", "Own.scheduler=S1", "Own.execution_time=12ticks")[-1] == (
+        "3.33333333333 us",
+        "12 ticks",
+    )
 
 
 def test_an_unknown_frequency_needs_ticks():

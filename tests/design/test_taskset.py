@@ -29,9 +29,7 @@ def test_published_response_times(pairs, expected):
 def test_deadline_monotonic_priorities():
     # Burns and Wellings, deadline-monotonic example: periods say nothing about the order
     rows = [("a", 20, 5, 3), ("b", 15, 7, 3), ("c", 10, 10, 4), ("d", 20, 20, 3)]
-    tasks = [
-        amuros.task(name, period=period * MS, deadline=deadline * MS, wcet=wcet * MS) for name, period, deadline, wcet in rows
-    ]
+    tasks = [amuros.task(name, period=period, deadline=deadline, wcet=wcet, unit="ms") for name, period, deadline, wcet in rows]
     system = amuros.taskset(reversed(tasks), priorities="deadline monotonic")
     assert sorted(worst(system)) == [3 * MS, 6 * MS, 10 * MS, 20 * MS]
     assert amuros.analyze(system).summary.schedulable is amuros.Schedulable.YES
@@ -180,7 +178,10 @@ WRONG = {
     "no activation": (lambda: a_task(), "A: expected either a period, or the min_distance"),
     "two activations": (lambda: a_task(period="5 ms", min_distance="5 ms"), "either a period"),
     "no unit": (lambda: a_task(period="5"), "A: period: '5' has no unit"),
-    "a float": (lambda: a_task(period=5.0), "or a number with its unit=, not 5.0"),
+    "a float": (
+        lambda: a_task(period=5.0),
+        "period: the number 5.0 has no unit; write a text such as '5.0 ms', or",
+    ),
     "period 0": (lambda: a_task(period=0), "period: 0 s is not positive"),
     "a negative time": (lambda: a_task(period="5 ms", offset="-1 ms"), "offset: -1 ms is negative"),
     "bcet above wcet": (lambda: a_task(period="5 ms", bcet="2 ms"), "the bcet 2 ms exceeds the wcet 1 ms"),
@@ -189,7 +190,7 @@ WRONG = {
     "an unknown preemption": (lambda: a_task(period="5 ms", preemption="never"), "expected one of preemptive, cooperative"),
     "numbers without unit": (lambda: amuros.taskset([(5, 1)]), "state the unit of all numbers, e.g. unit='ms'"),
     "an unknown unit": (lambda: amuros.taskset([(5, 1)], unit="msec"), "'msec' is not a unit of time; known units: ps"),
-    "not a number": (lambda: amuros.taskset([(float("nan"), 1)], unit="ms"), "expected a finite number, not nan"),
+    "not a number": (lambda: amuros.taskset([(float("nan"), 1)], unit="ms"), "expected a time such as '10 ms', not nan"),
     "a priority that is a text": (lambda: a_task(period="5 ms", priority="high"), "the priority: expected a whole number"),
     "a priority with a fraction": (lambda: a_task(period="5 ms", priority=1.5), "expected a whole number, not 1.5"),
     "a name that is a number": (lambda: amuros.task(1, period="5 ms", wcet="1 ms"), "the name of a task must be a text"),
@@ -206,7 +207,10 @@ WRONG = {
     ),
     "an unknown column": (lambda: amuros.taskset([{"perod": 5, "wcet": 1}], unit="ms"), "'perod'; did you mean 'period'?"),
     "a column that is missing": (lambda: amuros.taskset([{"period": 5}], unit="ms"), "T1: the wcet is missing"),
-    "rows without unit": (lambda: amuros.taskset([{"period": 5, "wcet": 1}]), "has no unit; state the unit of all numbers"),
+    "rows without unit": (
+        lambda: amuros.taskset([{"period": 5, "wcet": 1}]),
+        "or state the unit of all numbers, e.g. unit='ms'",
+    ),
     "an unknown policy": (lambda: amuros.taskset([], policy="RM"), "expected one of fixed priority, EDF"),
     "unknown priorities": (lambda: amuros.taskset([], priorities="RM"), "expected one of rate monotonic, deadline mono"),
     "a name twice": (lambda: amuros.taskset([a_task(period="5 ms")] * 2), "duplicate task 'A'"),

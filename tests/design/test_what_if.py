@@ -101,9 +101,9 @@ def test_what_else_changes_is_listed_as_a_consequence():
 
 def test_texts_for_people():
     found = amuros.what_if(MODEL, ["Control_Function.execution_time=5us"])
-    assert repr(found).startswith("<WhatIf Control_Function.execution_time: 4 ticks -> 5 ticks: schedulable yes -> yes; ")
+    assert repr(found).startswith("<WhatIf Control_Function.execution_time: 4 us -> 5 us: schedulable yes -> yes; ")
     lines = str(found).splitlines()
-    assert lines[0] == "Control_Function.execution_time: 4 ticks -> 5 ticks"
+    assert lines[0] == "Control_Function.execution_time: 4 us -> 5 us"
     assert lines[2] == "Before and after the change"
     assert lines[3].split() == ["object", "quantity", "before", "after", "effect", "claim"]
     assert "Control_Function  worst response" in str(found)

@@ -121,9 +121,9 @@ def test_a_hover_follows_the_text(server, file):
     assert server.hover(file, *place) == ""
 
 
-def test_there_is_no_hover_on_other_words(server, file):
+def test_a_hover_on_a_key_shows_what_it_means(server, file):
     server.open(file, SAMPLE)
-    assert server.hover(file, *position_of(SAMPLE, "hardware")) == ""
+    assert server.hover(file, *position_of(SAMPLE, "hardware")) == "**hardware**: The controller."
 
 
 def test_a_text_that_is_too_large_to_analyze_says_so(server, file):
@@ -135,6 +135,19 @@ def test_a_text_that_is_too_large_to_analyze_says_so(server, file):
 def test_the_limit_of_the_size_holds(server, file):
     text = START + "# " + "x" * (5 * 2**20)
     assert [code for *_, code in found(server.open(file, text))] == ["YML002"]
+
+
+def test_keys_are_completed_and_suggestions_are_quick_fixes(server, file):
+    text = START + "tasks:\n  - {name: A, execution_time: 1 ms, perod: 10 ms, "
+    diagnostics = server.open(file, text)
+    line, column = position_of(text + "|", "|")
+    assert "deadline" in [item["label"] for item in server.request("textDocument/completion", at(file, line, column))]
+    server.change(file, text + "}")
+    diagnostics = server.diagnostics_of(file)
+    everything = {"start": {"line": 0, "character": 0}, "end": {"line": 99, "character": 0}}
+    params = {"textDocument": {"uri": file.as_uri()}, "range": everything, "context": {"diagnostics": diagnostics}}
+    (action,) = [each for each in server.request("textDocument/codeAction", params) if each["title"] == "Replace by 'period'"]
+    assert edited(text + "}", action["edit"]["changes"][file.as_uri()]) == text.replace("perod", "period") + "}"
 
 
 def test_names_are_symbols_and_lead_to_their_definitions(server, file):

@@ -9,6 +9,9 @@ import pytest
 from support import MODEL, ROOT
 
 import amalthea_uros as amuros
+from amalthea_uros.findings.accepted import fingerprint
+from amalthea_uros.findings.grouping import FindingGroup
+from amalthea_uros.findings.presentation import Presentation
 from amalthea_uros.services.check import write_baseline
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
@@ -34,6 +37,20 @@ def test_the_settings_of_the_project_count(project):
     # What the caller gives replaces them.
     assert not amuros.check_files(project, amuros.CheckSettings(fail_on=amuros.Severity.ERROR)).fails
     assert rules(amuros.check_files(project, amuros.CheckSettings(select=["INC-CO-*"]))) == ["INC-CO-KIND"]
+
+
+def finding(rule, severity, name):
+    return amuros.Finding(rule, severity, f"the object {name!r}", None, "", name)
+
+
+def test_a_baseline_has_what_is_shown():
+    first, repeated = finding("AM-1", amuros.Severity.WARNING, "a"), finding("XMI011", amuros.Severity.INFO, "a")
+    effect, worse = finding("TIM-1", amuros.Severity.WARNING, "b"), finding("TIM-2", amuros.Severity.ERROR, "b")
+    shown = Presentation([FindingGroup((first, repeated), (effect, worse))], {})
+    # What is more severe than the flaw it follows from is accepted by itself, or shown.
+    assert shown.to_accept == [first, worse]
+    assert shown.accepted({fingerprint(first)}) == {first, repeated, effect}
+    assert shown.accepted({fingerprint(effect)}) == set()
 
 
 def test_a_baseline_accepts_findings(project, tmp_path):

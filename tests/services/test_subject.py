@@ -87,9 +87,17 @@ def test_anything_else_is_a_type_error_that_lists_what_is_accepted(function, sub
         function(subject)
 
 
-@pytest.mark.parametrize("duration", [1.5, None], ids=repr)
-def test_wrong_durations(duration):
-    with pytest.raises(amuros.InvalidArgumentError, match="the duration must be a time such as '1 s'"):
+@pytest.mark.parametrize(
+    ("duration", "message"),
+    [
+        (1.5, "the number 1.5 has no unit; write a text such as '1.5 ms', or a Duration"),
+        (10**9, "write a text such as '1000000000 ps'"),
+        (None, "expected a time such as '10 ms', not None"),
+    ],
+    ids=repr,
+)
+def test_wrong_durations(duration, message):
+    with pytest.raises(amuros.InvalidArgumentError, match=f"the duration: .*{message}"):
         amuros.simulate(YAML, duration)
 
 

@@ -3,10 +3,9 @@
 import pytest
 
 from amalthea_uros import analyze
-from amalthea_uros.perf.os import Duration
 from amalthea_uros.spec.os import OsSection, SleepTicks
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
-from amalthea_uros.units import MICROSECOND, MILLISECOND
+from amalthea_uros.units import MICROSECOND, MILLISECOND, Duration
 from amalthea_uros.uros.executors.add import slept
 
 MS = MILLISECOND

@@ -14,7 +14,8 @@ from amalthea_uros.bridge.basics.context import Building, Extracting
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy
+from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Policy
+from amalthea_uros.units import Duration
 
 PRIORITY, DEADLINE = "priority", "deadline"
 

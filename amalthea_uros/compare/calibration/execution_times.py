@@ -81,7 +81,7 @@ def calibrated_execution_times(
             continue
         overhead = _overhead(each, places)
         if overhead is None:
-            reason = "its overhead varies and is part of the measured times; subtract that of an empty job with --baseline"
+            reason = "its overhead varies and is part of the measured times; subtract that of an empty job with --empty"
             yield calibrated(
                 f"{each.series.name}.execution_time", samples_of([each], options.judge_on), Outcome.NOT_WRITTEN, reason
             )

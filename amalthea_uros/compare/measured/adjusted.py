@@ -31,7 +31,7 @@ def net(found: Measurement, empty: Measurement, baselines: Mapping[str, str]) ->
     return replace(found, series=series, findings=(*found.findings, *findings))
 
 
-_ADVICE = "Check the markers of the empty object, or give the trace with it: --baseline-from TRACE."
+_ADVICE = "Check the markers of the empty object, or give the trace with it: --empty-from TRACE."
 
 
 def with_period(series: Series, period: Time) -> Series:

@@ -83,7 +83,7 @@ class MeasureOptions:
         if not self.columns and (self.valid_rows is not None or self.unit is not None):
             raise InvalidArgumentError("which rows are valid, and the unit, belong to the columns of a table; add --column")
         if self.baseline_from is not None and not self.baselines and self.markers is None:
-            raise InvalidArgumentError("a trace for baselines needs the name of the empty object; add --baseline NAME")
+            raise InvalidArgumentError("a trace with empty objects needs the name of one; add --empty NAME")
 
 
 def measure_file(path: Path, options: MeasureOptions) -> Measurement:

@@ -15,7 +15,7 @@ from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
-from amalthea_uros.units import Frequency, down, ticks_of_time, up
+from amalthea_uros.units import Frequency, down, ticks_of_time, time_of_ticks, time_text, up
 
 _TICKS = re.compile(r"(\d{1,18})\s*ticks?", re.ASCII)
 
@@ -81,19 +81,31 @@ def _callers(runnable: str, system: System) -> list[str]:
 
 
 def _show_runnable(configuration: Configuration, name: str) -> str:
-    return _text(_demands(walk(configuration.system.runnables[name].activities)))
+    demands = _demands(walk(configuration.system.runnables[name].activities))
+    return _text(demands, _known_frequency(name, _callers(name, configuration.system), configuration))
 
 
 def _show_process(configuration: Configuration, name: str) -> str:
-    return _text(_demands(executed(configuration.system.processes[name].activities, configuration.system)))
+    demands = _demands(executed(configuration.system.processes[name].activities, configuration.system))
+    return _text(demands, _known_frequency(name, [name], configuration))
 
 
-def _text(demands: list[Execute | ExecutionNeed]) -> str:
+def _text(demands: list[Execute | ExecutionNeed], frequency: Frequency | None) -> str:
     match demands:
         case [Execute(demand=Demand(ticks=ticks))] if ticks is not None:
             lower, upper = lowest(ticks), highest(ticks)
+            if frequency is not None:
+                ends = ["" if end is None else time_text(time_of_ticks(end, frequency)) for end in (lower, upper)]
+                return ends[0] if lower == upper else "..".join(ends)
             return f"{upper} ticks" if lower == upper else f"{lower}..{'' if upper is None else upper} ticks"
     return "several values" if demands else UNSET
+
+
+def _known_frequency(name: str, processes: Iterable[str], configuration: Configuration) -> Frequency | None:
+    try:
+        return _frequency(name, processes, configuration)
+    except InvalidArgumentError:
+        return None
 
 
 def _set_runnable(configuration: Configuration, name: str, time: ExecutionTime) -> Configuration:

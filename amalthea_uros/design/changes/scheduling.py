@@ -20,11 +20,11 @@ from amalthea_uros.design.changes.key import (
 )
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
-from amalthea_uros.perf.os import SERVERS, Duration, Parameter, Parent, Scheduler
+from amalthea_uros.perf.os import SERVERS, Parameter, Parent, Scheduler
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.ranks import CAPACITY, PERIOD
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Duration, Time, time_text
 
 
 @dataclass(frozen=True, slots=True)

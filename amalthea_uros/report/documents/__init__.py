@@ -29,6 +29,7 @@ DOCUMENTS = {
     "ImportResult": "descriptions.import_document",
     "InfoResult": "models.info_document",
     "InitResult": "descriptions.init_document",
+    "MethodBounds": "own_methods.methods_document",
     "Measurement": "measurement.measurement_document",
     "MetaCheck": "findings.meta_document",
     "MigrationResult": "migration.migration_document",

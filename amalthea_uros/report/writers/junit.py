@@ -18,7 +18,8 @@ def write(result: CheckResult, stream: IO[str]) -> None:
     from xml.etree import ElementTree
 
     by_rule: dict[str, list[Finding]] = {rule: [] for rule in result.rules}
-    for finding in (entry.finding for entry in result.presentation.entries() if entry.counts):
+    entries = result.presentation.entries(details=result.with_details)
+    for finding in (entry.finding for entry in entries if entry.counts):
         by_rule.setdefault(finding.rule, []).append(finding)
     failing = {rule for rule, found in by_rule.items() if any(f.severity is not Severity.INFO for f in found)}
     suites = ElementTree.Element("testsuites")

@@ -28,7 +28,7 @@ _ROOT = "SRCROOT"
 
 def write(result: CheckResult, stream: IO[str]) -> None:
     """Write one run, with the rules that fired and where."""
-    entries = result.presentation.entries()
+    entries = result.presentation.entries(details=result.with_details)
     used = sorted({entry.finding.rule for entry in entries})
     artifact = cache(_artifact)  # Thousands of findings may be in one file.
     driver = {"name": "amuros", "version": __version__, "informationUri": DOCUMENTATION}

@@ -14,14 +14,14 @@ from functools import partial
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.os import SERVERS, Duration, Parameter, ParameterValue, Policy, Scheduler
+from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Policy, Scheduler
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.scheduling.allocation import BY_PRIORITY, deciding_scheduler, effective_priority, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, SchedulingContext, Server
-from amalthea_uros.units import Time
+from amalthea_uros.units import Duration, Time
 
 #: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
 #: (`osekTaskGroup`, until 0.8.0).

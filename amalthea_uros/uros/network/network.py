@@ -101,6 +101,7 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
         loses_messages=middleware.transport.is_lossy,
         losses=tuple(stated_losses(middleware.transport.losses)),
         recovery=context.profile.recovery if any(each.transmission.acknowledges for each in queued) else None,
+        origin=middleware.transport.location() or middleware.location(),
     )
     check_load(plan, context.notes)
     check_reading(plan, system.executors, context.notes)

@@ -13,6 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import chain, count
 
+from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity, Demand, Execute, SchedulePoint, Trigger
 from amalthea_uros.perf.distributions import Boundaries, Constant, Sampling
 from amalthea_uros.perf.hardware import Clock, Core, CoreType, Structure
@@ -91,6 +92,7 @@ class WirePlan:
     ----------
     name : of the wire
     loses_messages, losses, recovery : as in `perf.network.Wire`
+    origin : where the transport is described
     """
 
     line: Line
@@ -100,6 +102,7 @@ class WirePlan:
     loses_messages: bool = False
     losses: tuple[Losses, ...] = ()
     recovery: Recovery | None = None
+    origin: Location | None = None
 
     def core(self, direction: Direction) -> str:
         """The core that stands for a direction."""
@@ -146,7 +149,7 @@ def with_wire(system: System, plan: WirePlan, agent: str, assumptions: tuple[str
     wire = WireCores(
         name=plan.name,
         ticks_per_second=plan.line.ticks_per_second,
-        cores=tuple(Core(name=core, type=_TYPE, clock=plan.name) for core in plan.cores),
+        cores=tuple(Core(name=core, type=_TYPE, clock=plan.name, origin=plan.origin) for core in plan.cores),
         stimuli=tuple(each.stimulus for each in plan.queued if each.stimulus is not None),
         tasks=tuple(_task(each, plan) for each in plan.queued),
         allocations=tuple(

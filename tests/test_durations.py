@@ -1,0 +1,36 @@
+"""Times of callers: with a unit, or refused."""
+
+from datetime import timedelta
+from fractions import Fraction
+
+import pytest
+
+import amalthea_uros as amuros
+from amalthea_uros.design.stated_times import stated_time
+from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
+
+
+@pytest.mark.parametrize("value", ["1.5 ms", Duration.of("1500 us"), Duration(1_500_000_000), timedelta(microseconds=1500)])
+def test_the_same_time(value):
+    assert stated_time("the period", value) == 3 * MS // 2
+    assert amuros.task("A", period=value, wcet="1 ms").period == 3 * MS // 2
+
+
+def test_numbers_have_a_unit():
+    assert stated_time("t", Fraction(3, 2), "ms") == 3 * MS // 2
+    assert stated_time("t", 0) == 0
+    with pytest.raises(
+        amuros.InvalidArgumentError, match=r"A: period: the number 10 has no unit; write a text such as '10 ms', or"
+    ):
+        amuros.task("A", period=10, wcet="1 ms")
+    with pytest.raises(TypeError, match=r"write Duration.of\('10 ms'\)"):
+        Duration("10 ms")
+
+
+def test_arithmetic():
+    ten, two = Duration.of("10 ms"), Duration.of("2 ms")
+    assert (str(ten + two), str(ten - two), str(3 * two), two < ten) == ("12 ms", "8 ms", "6 ms", True)
+    # A result is in picoseconds; it can be stated again.
+    worst = amuros.analyze(amuros.taskset([(ten, two)], priorities="rate monotonic"))["T1"].wcrt
+    assert amuros.task("B", period=Duration(worst), wcet="1 ms").period == 2 * MS
