@@ -185,7 +185,7 @@ def simulate_campaign(
     changed = open_changed(paths, options.settings, changes, with_bus=with_bus)
     changed.check_sweeps(sweeps)
     _require_labels(options.labels, changed.system)
-    job, executor = SimulationJob(changed.given.system, options, changed.changes), executor_for(len(runs), workers, cluster)
+    job, executor = SimulationJob(changed.origin, options, changed.changes), executor_for(len(runs), workers, cluster)
     return CampaignResult(
         paths=changed.opened.paths,
         options=options,

@@ -71,7 +71,7 @@ def sweep_changed(
     executor = executor_for(len(plan.runs), 1 if few else workers, cluster)
     return SweepResult(
         plan=plan,
-        outcomes=finished_runs(AnalysisJob(*changed.given, changed.changes, with_growth), plan.runs, executor, on_outcome),
+        outcomes=finished_runs(AnalysisJob(changed.origin, changed.changes, with_growth), plan.runs, executor, on_outcome),
         differences=changed.differences,
         findings=unsuppressed(changed.opened.findings),
         source=" ".join(map(str, changed.opened.paths)),

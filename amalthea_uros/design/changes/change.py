@@ -27,7 +27,7 @@ class Change:
 
     Attributes
     ----------
-    object : name of a process, runnable, core, clock, scheduler, stimulus, mode label, message, label or channel
+    object : name of an object, or of a section of a description; "" if the key alone says what is changed
     key : what is changed, such as `period`
     value : with its unit, as the user wrote it
     """
@@ -39,7 +39,7 @@ class Change:
     @property
     def target(self) -> str:
         """The object and the key, such as "Executor_Task.period"."""
-        return f"{self.object}.{self.key}"
+        return f"{self.object}.{self.key}".removeprefix(".")
 
     def __str__(self) -> str:
         return f"{self.target}={self.value}"
@@ -94,8 +94,8 @@ def split_assignment(text: str, form: str, example: str) -> tuple[str, str]:
 
 def split_target(target: str, text: str, form: str, example: str) -> tuple[str, str]:
     """The name of the object and the key; raises as `parse_change`."""
-    name, _, key = target.rpartition(".")
-    if not name or not key:
+    name, dot, key = target.rpartition(".")
+    if not key or (dot and not name):
         raise InvalidArgumentError(f"{text!r} does not name an object and a key; expected {form}, e.g. {example}")
     return name, key
 
