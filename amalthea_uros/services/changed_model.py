@@ -7,8 +7,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.files import read_text
-from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.changes.change import Change
@@ -118,22 +116,4 @@ def write_proposal(result: Optimization, number: int, path: StrPath) -> None:
     if number > len(result.proposals):
         found = f"only {len(result.proposals)} were found" if result.proposals else "none was found"
         raise InvalidArgumentError(f"there is no proposal {number} to write to {path}: {found}")
-    proposal = result.proposals[number - 1]
-    if is_description(path):
-        _write_description(result.paths, proposal.changes, path)
-    elif proposal.rebuilt is not None:
-        write_changed(proposal.rebuilt, proposal.value_changes, result.settings, path)
-    else:
-        write_changed(result.subject, proposal.changes, result.settings, path)
-
-
-def _write_description(paths: Sequence[Path], changes: Sequence[Change], path: StrPath) -> None:
-    """Write the description that was read with changes."""
-    from amalthea_uros.design.description.edit import edit_description
-
-    if len(paths) != 1 or not is_description(paths[0]):
-        raise InvalidArgumentError(
-            f"{path}: only a proposal for an app.yaml is written as one; give a file with the suffix .amxmi"
-        )
-    text = read_text(paths[0], DESCRIPTION_SIZE)
-    save_text(path, edit_description(text, paths[0], changes).text)
+    write_changed(result.subject, result.proposals[number - 1].changes, result.settings, path)
