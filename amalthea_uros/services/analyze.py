@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.priorities.assignment import Proposal
     from amalthea_uros.analyze.results.explanations import CallbackExplanation, ChainExplanation, ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
+    from amalthea_uros.design.description.origin import DescriptionOrigin
     from amalthea_uros.design.improvements import Improvements
 
 
@@ -59,6 +60,7 @@ class AnalysisResult(Brief, Shown):
     Attributes
     ----------
     task_periods : those that an app.yaml offers to tasks
+    source : the app.yaml with the changes; None for other systems
     findings : problems found while reading the files, and what the analysis could not take into account
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
@@ -69,6 +71,7 @@ class AnalysisResult(Brief, Shown):
 
     paths: tuple[Path, ...]
     task_periods: tuple[Time, ...] = ()
+    source: DescriptionOrigin | None = None
     system: System
     settings: Settings
     analysis: Analysis
@@ -158,6 +161,7 @@ def analyze_files(
     return AnalysisResult(
         paths=changed.opened.paths,
         task_periods=changed.opened.task_periods,
+        source=changed.source,
         system=changed.system,
         settings=changed.settings,
         analysis=analysis,
@@ -188,13 +192,15 @@ def analysis_result(analyzed: Analyzed) -> AnalysisResult:
     if isinstance(analyzed, AnalysisResult):
         return analyzed
     offered: tuple[Time, ...] = ()
+    source: DescriptionOrigin | None = None
     if not isinstance(analyzed, Analysis):
         changed = open_changed(analyzed)
-        analyzed, offered = _analyzed(changed), changed.opened.task_periods
+        analyzed, offered, source = _analyzed(changed), changed.opened.task_periods, changed.source
     context = analyzed.solution.context
     return AnalysisResult(
         paths=(),
         task_periods=offered,
+        source=source,
         system=context.system,
         settings=context.settings,
         analysis=analyzed,

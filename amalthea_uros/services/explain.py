@@ -41,7 +41,7 @@ def explain(
         process=explain_process(analysis, name) if name in system.processes else None,
         chain=chain,
         callbacks=explain_callback(analysis, name),
-        improvements=None if chain is None else improvements_of(analysis, chain, result.task_periods),
+        improvements=None if chain is None else improvements_of(analysis, chain, result.task_periods, result.source),
     )
 
 
@@ -62,4 +62,5 @@ def improvements(
     result = analysis_result(analyzed)
     require("chain", [chain], result.system.chains)
     check_explained(quantity)
-    return improvements_of(result.analysis, explain_chain(result.analysis, chain, quantity), result.task_periods)
+    explained = explain_chain(result.analysis, chain, quantity)
+    return improvements_of(result.analysis, explained, result.task_periods, result.source)

@@ -27,6 +27,7 @@ from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MILLISECOND, SECOND, Time
 
 if TYPE_CHECKING:
+    from amalthea_uros.design.description.origin import DescriptionOrigin
     from amalthea_uros.findings.presentation import Presentation
     from amalthea_uros.uros.assemble import Assembly
 
@@ -50,6 +51,7 @@ class ReportContent:
     ----------
     title : by default, the names of the files
     date : as the caller states it; "" for none, so that the same input gives the same report
+    source : the app.yaml with the changes; None for other systems
     system, settings : with the changes
     before : the analysis without the changes; None if there are none
     differences : what the changes did
@@ -62,6 +64,7 @@ class ReportContent:
 
     title: str
     date: str = ""
+    source: DescriptionOrigin | None = None
     system: System
     settings: Settings
     analysis: Analysis
@@ -126,6 +129,7 @@ def compile_report(
     return ReportContent(
         title=title or _name(opened),
         date=date,
+        source=changed.source,
         system=system,
         settings=changed.settings,
         analysis=analysis,

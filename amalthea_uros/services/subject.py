@@ -85,6 +85,16 @@ class ChangedSystem:
     settings: Settings
     differences: tuple[Difference, ...]
 
+    @property
+    def source(self) -> DescriptionOrigin | None:
+        """The description with the changes; None for other systems."""
+        if self.opened.assembly is None:
+            return None
+        from amalthea_uros.design.description.origin import DescriptionOrigin
+
+        assert isinstance(self.origin, DescriptionOrigin)
+        return self.origin.after(self.changes)
+
     def check_sweeps(self, sweeps: Iterable[Sweep]) -> None:
         """Refuse names and values that cannot be swept, before the first run; the ends of each sweep are tried."""
         for sweep in sweeps:

@@ -151,10 +151,17 @@ def _without(target: str, name: str) -> str | None:
 
 
 def short_name(key: DescriptionKey, keys: Sequence[DescriptionKey]) -> str:
-    """The shortest name that means only this key."""
-    for count in range(2 if len(key.names) > 1 else 1, len(key.names)):
-        for first in range(len(key.names) - count, -1, -1):
-            name = ".".join((*key.names[first : first + count - 1], key.names[-1]))
-            if [each.path for each in matching(name, keys)] == [key.path]:
-                return name
+    """The shortest name that means only this key, if possible with the object that has it."""
+    for name in _candidates(key):
+        if [each.path for each in matching(name, keys)] == [key.path]:
+            return name
     return key.full_name
+
+
+def _candidates(key: DescriptionKey) -> Iterator[str]:
+    objects = [index for index, name in enumerate(key.names[:-1]) if name not in key.path[:-1]]
+    for length in range(1, len(key.names)):
+        end = key.names[-length:]
+        yield from (".".join((key.names[index], *end)) for index in reversed(objects) if index < len(key.names) - length)
+        if len(end) > 1 or len(key.names) == 1:
+            yield ".".join(end)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -51,17 +51,19 @@ class DescriptionOrigin:
     ----------
     path : of its file, for findings, and for the files that it names
     with_bus : whether the CAN bus is a part of the system
+    assumed : what is changed in the system after it was built
     """
 
     text: str
     path: Path
     settings: Settings
     with_bus: bool = False
+    assumed: tuple[Change, ...] = ()
 
     @property
     def present(self) -> Configuration:
         """The system and the settings without changes."""
-        return Configuration(self._system(self.text), self.settings)
+        return apply(self._system(self.text), self.settings, self.assumed)
 
     @property
     def keys(self) -> tuple[DescriptionKey, ...]:
@@ -71,7 +73,12 @@ class DescriptionOrigin:
     def configure(self, changes: Sequence[Change]) -> Configuration:
         """The system of the edited description, and the settings; InvalidArgumentError if something is wrong with a change."""
         system, assumed = self.rebuilt(changes)
-        return apply(system, self.settings, assumed)
+        return apply(system, self.settings, (*self.assumed, *assumed))
+
+    def after(self, changes: Sequence[Change]) -> DescriptionOrigin:
+        """The edited description; raises as `configure`."""
+        divided = self.divided(changes)
+        return replace(self, text=self._text(divided), assumed=(*self.assumed, *divided.assumed))
 
     def rebuilt(self, changes: Sequence[Change]) -> tuple[System, tuple[Change, ...]]:
         """The system of the edited description, and the changes that no description states; raises as `configure`."""
@@ -96,14 +103,14 @@ class DescriptionOrigin:
         """The values before and after changes, and what of tasks follows from them."""
         if not changes:
             return ()
-        divided, old = self.divided(changes), self.present
+        divided, old = self.divided(changes), self._system(self.text)
         new = self._changed_system(divided, changes)
         text = self._text(divided)
         found = {each.target: self._difference(each, key, text, divided) for each, key in divided.stated}
         found |= {
             f"{each.object}.{each.key}": each for each in describe(new, self.settings, divided.assumed) if divided.assumed
         }
-        return (*found.values(), *_consequences(old.system, new, found))
+        return (*found.values(), *_consequences(old, new, found))
 
     def divided(self, changes: Sequence[Change]) -> DividedChanges:
         """The changes by what they act on.
