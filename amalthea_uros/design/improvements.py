@@ -227,7 +227,7 @@ class Improvements(Shown):
 
     Attributes
     ----------
-    found : the shortest latency first
+    found : the shortest latency first, then combinations of them, from two changes on
     tried : number of changed systems that were analysed
     untried : number of changes that were not, because there are too many
     """
@@ -248,7 +248,10 @@ class Improvements(Shown):
         for each in self.found:
             targets = tuple(change.target for change in each.change.changes)
             different.setdefault((*targets, each.change.communication, each.after), each)
-        return tuple(islice(different.values(), count))
+        every = tuple(different.values())
+        singles = [each for each in every if not each.change.is_combined]
+        combined = [each for each in every if each.change.is_combined][-_SHOWN_COMBINATIONS:]
+        return (*singles[: count - len(combined)], *combined)
 
 
 def improvements_of(
@@ -275,22 +278,23 @@ def improvements_of(
     prepared = list(islice((pair for one in every for pair in trial.prepared(one)), None if source is None else MAX_ANALYSES))
     most = min(MAX_ANALYSES, max(MIN_ANALYSES, MAX_PROCESSES // max(1, len(analysis.processes))))
     singles = [found for each, changed in islice(prepared, most) if (found := trial.tried(each, changed)) is not None]
-    ranked = sorted((*singles, *trial.combined(sorted(singles, key=rank))), key=rank)
+    ranked = sorted(singles, key=rank)
     return Improvements(
         chain=trial.chain,
         quantity=trial.quantity,
-        found=tuple(ranked),
+        found=(*ranked, *trial.combined(ranked)),
         tried=trial.count,
         untried=max(0, len(prepared) - most) if source is None or len(prepared) < MAX_ANALYSES else len(every) - most,
     )
 
 
-def rank(found: Improvement) -> tuple[float, Time, bool]:
-    """The largest effect per changed value first; without a bound before, the shortest latency."""
-    gain = 0 if found.before is None else found.before - found.after
-    return (-gain / max(1, len(found.change.changes)), found.after, not found.is_safe)
+def rank(found: Improvement) -> tuple[Time, bool]:
+    """The shortest latency first."""
+    return found.after, not found.is_safe
 
 
+#: Of the combinations, so many are shown, those with the most changes.
+_SHOWN_COMBINATIONS = 2
 #: So many changes are tried together at most: the more there are, the less is known of which of them are needed.
 MAX_COMBINED = 3
 

@@ -44,7 +44,7 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
         return
     if is_description(path):
         raise InvalidArgumentError(
-            f"{path}: only an app.yaml with changes is written as one; give a file with the suffix .amxmi"
+            f"{path}: a changed system is written as an AMALTHEA model, not as a description; give a file with the suffix .amxmi"
         )
     model = given if opened is None else opened.model
     if model is None:

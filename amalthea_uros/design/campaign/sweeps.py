@@ -83,7 +83,7 @@ def _listed(target: str, values: Sequence[object]) -> Sweep:
         return parse_sweep(f"{target}={values}")
     if not values:
         raise InvalidArgumentError(f"{target!r} has no values to try")
-    return Sweep(*split_target(target, target, SWEEP_FORM, "Executor_Task.period"), tuple(map(str, values)))
+    return Sweep(*split_target(target, target, SWEEP_FORM, "Executor_Task.period", needs_object=False), tuple(map(str, values)))
 
 
 SCHEDULABLE, GROWTH = "schedulable", "maximum_growth"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.description.keys import DescriptionKey, short_name
 from amalthea_uros.spec.written import Written
 from amalthea_uros.units import parse_bit_rate, parse_time
@@ -48,7 +48,7 @@ def _is_meant(key: DescriptionKey) -> bool:
 def _suggestion(key: DescriptionKey, value: str, keys: Sequence[DescriptionKey]) -> Suggestion:
     target = short_name(key, keys)
     name, _, last = target.rpartition(".")
-    return Suggestion(text=f"{target} {key.value} -> {value}", change=Change(name, last, value))
+    return Suggestion(text=f"{target} {key.value} -> {value}", change=Change(name, last, compact(value)))
 
 
 def _shorter(present: Written | None) -> Iterator[str]:

@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from amalthea_uros.design.changes.apply import Difference, apply, describe
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
 from amalthea_uros.design.changes.timing_changes import Happening, timing_changes
 from amalthea_uros.design.description.assign import Assignments, is_stated_by_parts, the_key
@@ -95,7 +95,7 @@ class DescriptionOrigin:
         divided = self.divided(changes)
         if divided.assumed:
             names = ", ".join(map(str, divided.assumed))
-            raise InvalidArgumentError(f"an app.yaml cannot state {names}; write an AMALTHEA model (.amxmi) instead")
+            raise InvalidArgumentError(f"an app.yaml does not state {names}; write an AMALTHEA model (.amxmi) instead")
         self._changed_system(divided, changes)
         return self._text(divided)
 
@@ -145,7 +145,7 @@ class DescriptionOrigin:
             key = by_path.get(each.path)
             target = each.target if key is None else short_name(key, self.keys)
             name, _, last = target.rpartition(".")
-            found.append(Change(name, last, rendered(each.value)))
+            found.append(Change(name, last, compact(rendered(each.value))))
         return tuple(found)
 
     def places(self) -> Places:

@@ -43,7 +43,11 @@ def refusal(
         return InvalidArgumentError(
             f"{what}; {change.object!r} has {listed(list(dict.fromkeys(own)))}" if own else f"{what}; {reason}"
         )
-    return InvalidArgumentError(f"{change}: the description has no value {change.target!r}; {_advice(change, keys) or reason}")
+    known = dict.fromkeys((*(name for key in keys for name in key.names[:-1]), *_objects(system)))
+    elsewhere = _advice(change, keys)
+    if change.object and change.object.rpartition(".")[2] not in known and not elsewhere:
+        return InvalidArgumentError(f"unknown object {change.object!r}; {did_you_mean(change.object, known) or reason}")
+    return InvalidArgumentError(f"{change}: the description has no value {change.target!r}; {elsewhere or reason}")
 
 
 def _advice(change: Change, keys: Sequence[DescriptionKey]) -> str:
@@ -53,8 +57,9 @@ def _advice(change: Change, keys: Sequence[DescriptionKey]) -> str:
         return f"did you mean {elsewhere[0]!r}?"
     names = [name for key in keys if not key.is_part for name in _names(key)]
     closest = similar(change.target, dict.fromkeys(names), cutoff=0.85)
-    near = f"did you mean {closest[0]!r}?" if closest else did_you_mean(change.target, dict.fromkeys(names))
-    return near or (f"{change.key!r} is a key of {listed(elsewhere)}" if elsewhere else "")
+    if closest:
+        return f"did you mean {closest[0]!r}?"
+    return f"{change.key!r} is a key of {listed(elsewhere)}" if elsewhere else ""
 
 
 def _names(key: DescriptionKey) -> list[str]:
@@ -66,6 +71,10 @@ def _is_wire(name: str, system: System) -> bool:
     wires = system.network.wires
     clocks = {system.cores[core].clock for wire in wires for core in wire.cores if core in system.cores}
     return name in clocks or any(name == wire.name or name in wire.cores for wire in wires)
+
+
+def _objects(system: System) -> list[str]:
+    return [name for kind in KINDS for name in kind.objects(system)]
 
 
 def _is_built(change: Change, system: System) -> bool:
