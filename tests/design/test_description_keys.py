@@ -1,6 +1,8 @@
 """The values of a description as keys: setting one is what editing the file is."""
 
 import re
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 import yaml
@@ -14,7 +16,7 @@ from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.keys import keys_of, matching, short_name
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.errors import InvalidArgumentError, ReadError
-from amalthea_uros.services.init import catalogue, template
+from amalthea_uros.services.init import catalogue, init_from_board
 from amalthea_uros.services.subject import open_changed
 from amalthea_uros.units import MILLISECOND
 from amalthea_uros.uros.described import describe_text
@@ -126,7 +128,10 @@ def test_what_cannot_be_set_is_explained(change, words):
 def texts():
     """All samples, and what `amuros init` writes for each board."""
     found = [(path, path.read_text(encoding="utf-8")) for path in sorted(SAMPLES.glob("*.yaml"))]
-    found += [(SAMPLES / f"{board.name}.yaml", template(board.name)) for board in catalogue().boards]
+    with TemporaryDirectory() as folder:
+        for board in catalogue().boards:
+            written = init_from_board(Path(folder, f"{board.name}.yaml"), board.name).path
+            found.append((SAMPLES / written.name, written.read_text(encoding="utf-8")))
     return found
 
 
