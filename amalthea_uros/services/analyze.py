@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -21,7 +21,8 @@ from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.analysis_findings import shown_findings
-from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
+from amalthea_uros.services.changed import ChangedSystem, open_changed
+from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
@@ -60,7 +61,7 @@ class AnalysisResult(Brief, Shown):
     Attributes
     ----------
     task_periods : those that an app.yaml offers to tasks
-    source : the app.yaml with the changes; None for other systems
+    changed : what was analysed; None if only an analysis is known
     findings : problems found while reading the files, and what the analysis could not take into account
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
@@ -71,7 +72,7 @@ class AnalysisResult(Brief, Shown):
 
     paths: tuple[Path, ...]
     task_periods: tuple[Time, ...] = ()
-    source: DescriptionOrigin | None = None
+    changed: ChangedSystem | None = field(default=None, compare=False)
     system: System
     settings: Settings
     analysis: Analysis
@@ -83,6 +84,11 @@ class AnalysisResult(Brief, Shown):
     with_metrics: bool = False
     differences: tuple[Difference, ...] = ()
     impact: Impact | None = None
+
+    @property
+    def source(self) -> DescriptionOrigin | None:
+        """The app.yaml with the changes; None for other systems."""
+        return None if self.changed is None else self.changed.source
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +167,7 @@ def analyze_files(
     return AnalysisResult(
         paths=changed.opened.paths,
         task_periods=changed.opened.task_periods,
-        source=changed.source,
+        changed=changed,
         system=changed.system,
         settings=changed.settings,
         analysis=analysis,
@@ -192,15 +198,15 @@ def analysis_result(analyzed: Analyzed) -> AnalysisResult:
     if isinstance(analyzed, AnalysisResult):
         return analyzed
     offered: tuple[Time, ...] = ()
-    source: DescriptionOrigin | None = None
+    changed = None
     if not isinstance(analyzed, Analysis):
         changed = open_changed(analyzed)
-        analyzed, offered, source = _analyzed(changed), changed.opened.task_periods, changed.source
+        analyzed, offered = _analyzed(changed), changed.opened.task_periods
     context = analyzed.solution.context
     return AnalysisResult(
         paths=(),
         task_periods=offered,
-        source=source,
+        changed=changed,
         system=context.system,
         settings=context.settings,
         analysis=analyzed,

@@ -12,8 +12,9 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system, update_model
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.services.changed import description_origin
 from amalthea_uros.services.files import save_text
-from amalthea_uros.services.subject import Subject, SystemInput, as_model, description_origin, open_system
+from amalthea_uros.services.subject import Subject, SystemInput, as_model, open_system
 from amalthea_uros.timing.basics.settings import Settings
 
 if TYPE_CHECKING:

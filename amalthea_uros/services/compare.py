@@ -19,8 +19,9 @@ from amalthea_uros.design.changes.change import Changes
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.inputs import as_paths
-from amalthea_uros.services.subject import Subject, open_changed, time_of
+from amalthea_uros.services.subject import Subject, time_of
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 

@@ -22,7 +22,8 @@ from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_sear
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
-from amalthea_uros.services.subject import Subject, SystemInput, description_origin, open_changed
+from amalthea_uros.services.changed import description_origin, open_changed
+from amalthea_uros.services.subject import Subject, SystemInput
 from amalthea_uros.timing.basics.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.

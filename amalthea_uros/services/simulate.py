@@ -20,7 +20,8 @@ from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed, time_of
+from amalthea_uros.services.changed import ChangedSystem, open_changed
+from amalthea_uros.services.subject import Subject, time_of
 from amalthea_uros.simulate.options import ALL_LABELS, Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time

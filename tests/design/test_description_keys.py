@@ -1,6 +1,7 @@
 """The values of a description as keys: setting one is what editing the file is."""
 
 import re
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,8 +17,8 @@ from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.keys import keys_of, matching, short_name
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.errors import InvalidArgumentError, ReadError
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.init import catalogue, init_from_board
-from amalthea_uros.services.subject import open_changed
 from amalthea_uros.units import MILLISECOND
 from amalthea_uros.uros.described import describe_text
 
@@ -115,7 +116,7 @@ def test_only_the_value_differs_in_the_written_file(tmp_path):
         ("uros_task.execution_time=1us", "has parts, which are stated one by one; change uros_task.execution_time.base"),
         ("uros_task.sleep=fast", "is not a time"),
         ("On_Cmd.core=Core_3", "is not valid: 'On_Cmd' runs in the executor"),
-        ("On_Cmd.scheduler=Scheduler", "unknown"),
+        ("On_Cmd.scheduler=Scheduler", "'On_Cmd.scheduler'; 'On_Cmd' has name"),
         ("Nobody.period=1ms", "unknown object 'Nobody'"),
     ],
 )
@@ -169,25 +170,31 @@ def outcome(make):
         return None
 
 
+@cache
+def keys_in(number):
+    path, text = TEXTS[number]
+    return keys_of(describe_text(text, path).whole, text)
+
+
 @st.composite
 def value_changes(draw):
-    path, text = draw(st.sampled_from(TEXTS))
-    keys = keys_of(describe_text(text, path).whole, text)
-    key = draw(st.sampled_from([each for each in keys if not each.is_part]))
+    """The number of a text, the name of one of its values, and another value."""
+    text = draw(st.integers(0, len(TEXTS) - 1))
+    key = draw(st.sampled_from([each for each in keys_in(text) if not each.is_part]))
     number = draw(st.integers(1, 30))
     similar = re.sub(r"^\d+(\.\d+)?(?= )", str(number), key.value) if isinstance(key.value, str) else number
     value = draw(st.sampled_from([similar, similar, not key.value, "best-effort", "LET", "blocking", f"{number} ms"]))
-    return path, text, key, keys, value
+    return text, short_name(key, keys_in(text)), value
 
 
 @examples(80)
 @given(value_changes())
 def test_setting_any_value_is_editing_the_file(case):
-    path, text, key, keys, value = case
+    number, name, value = case
+    path, text = TEXTS[number]
+    (key,) = matching(name, keys_in(number))
     tree = edited_tree(yaml.safe_load(text), key.path, value)
     assume(tree is not None)
-    name = short_name(key, keys)
-    assert [each.path for each in matching(name, keys)] == [key.path]
     by_hand = outcome(lambda: describe_text(yaml.safe_dump(tree, sort_keys=False), path).assembly.system)
     origin = DescriptionOrigin(text=text, path=path, settings=amuros.Settings())
     spelled = str(value).lower() if isinstance(value, bool) else str(value)

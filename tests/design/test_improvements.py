@@ -109,7 +109,7 @@ def test_what_a_change_breaks_is_said(advanced):
     limit = TimeLimit(metric=TimeMetric.RESPONSE_TIME, bound=Bound.UPPER, value=29 * US)
     requirement = Requirement(name="tight", process="Control_Function", limit=limit)
     system = replace(advanced.system, constraints=replace(advanced.system.constraints, requirements=(requirement,)))
-    result = replace(advanced, system=system, analysis=analyze_system(system), source=None)
+    result = replace(advanced, system=system, analysis=analyze_system(system), changed=None)
     (exchanged,) = [
         each for each in improvements(result, CHAIN).found if each.change.text.endswith("Message_Factor and Control_Function")
     ]

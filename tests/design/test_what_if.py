@@ -13,6 +13,7 @@ from amalthea_uros.design.changes.change import Change, parse_change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.uros.described import describe_file
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
 MODEL = ROOT / "samples" / "executor.amxmi"
@@ -101,7 +102,7 @@ def test_what_else_changes_is_listed_as_a_consequence():
 
 def test_what_else_changes_in_a_model_is_listed_as_a_consequence():
     # The executor takes the message in every 20th of its jobs.
-    system = amuros.extract(amuros.load(MODEL)).system
+    system = describe_file(ADVANCED).assembly.system
     found = amuros.what_if(system, ["Executor_Task.period=2ms"], amuros.Settings(phases={"Message_Factor": 0}))
     assert [str(each) for each in found.differences] == [
         "Executor_Task.period: 1 ms -> 2 ms",

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep, count_variants, variants
-from amalthea_uros.design.changes.origin import Origin
+from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import parse_frequency, parse_time
@@ -137,9 +137,9 @@ def compact_bytes(value: object) -> bytes:
     return stream.getvalue()
 
 
-def origin_from(data: bytes) -> Origin:
+def origin_from(data: bytes) -> ChangeOrigin:
     """What changes act on, from some bytes."""
-    origin: Origin = pickle.loads(data)
+    origin: ChangeOrigin = pickle.loads(data)
     return origin
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantResults, compact_bytes, origin_from
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.origin import Origin
+from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.simulate.options import Options
@@ -74,7 +74,7 @@ def judged_in(record: Record, verdict: ObservedVerdict) -> list[str]:
 class SimulationJob:
     """Simulates a system with the changes and the seed of a run; the options have the settings of the origin."""
 
-    origin: Origin
+    origin: ChangeOrigin
     options: Options
     changes: tuple[Change, ...] = ()
 

@@ -22,7 +22,7 @@ from amalthea_uros.design.changes.change import (
     split_target,
     variants,
 )
-from amalthea_uros.design.changes.origin import Origin
+from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.names import require
@@ -152,7 +152,7 @@ class SweepResult(VariantResults):
 class AnalysisJob:
     """Analyses a system with the changes of a run."""
 
-    origin: Origin
+    origin: ChangeOrigin
     changes: tuple[Change, ...] = ()
     with_growth: bool = False
 

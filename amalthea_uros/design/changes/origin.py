@@ -12,7 +12,7 @@ from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.changes.timing_changes import described
 
 
-class Origin(Protocol):
+class ChangeOrigin(Protocol):
     """What changes act on; it can be sent to other processes."""
 
     @property

@@ -11,7 +11,7 @@ from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.written import Written, section_class, written
 
 #: What identifies an item of a list, the first key that it has.
-_IDENTIFIERS = ("name", "topic", "service", "action")
+_IDENTIFIERS = ("name", "topic", "service", "action", "process")
 #: Words for keys that people look for under another name.
 _OTHER_WORDS = {"board": "hardware.platform"}
 

@@ -37,29 +37,30 @@ def refusal(
         )
     if change.key == "frequency" and change.object in system.cores:
         return InvalidArgumentError(f"{change}: {_CLOCK}")
+    own = listed(list(dict.fromkeys(key.names[-1] for key in keys if change.object in key.names[:-1] and not key.is_part)))
+    known = f"{change.object!r} has {own}" if own else str(reason)
     if _is_built(change, system):
-        own = [key.names[-1] for key in keys if change.object in key.names[:-1] and not key.is_part]
-        what = f"'{change.target}' is not stated in the description: it follows from other values"
         return InvalidArgumentError(
-            f"{what}; {change.object!r} has {listed(list(dict.fromkeys(own)))}" if own else f"{what}; {reason}"
+            f"{change.target!r} is not stated in the description: it follows from other values; {known}"
         )
-    known = dict.fromkeys((*(name for key in keys for name in key.names[:-1]), *_objects(system)))
-    elsewhere = _advice(change, keys)
-    if change.object and change.object.rpartition(".")[2] not in known and not elsewhere:
-        return InvalidArgumentError(f"unknown object {change.object!r}; {did_you_mean(change.object, known) or reason}")
-    return InvalidArgumentError(f"{change}: the description has no value {change.target!r}; {elsewhere or reason}")
+    unstated = f"{change}: the description has no value {change.target!r}"
+    if meant := _meant(change, keys):
+        return InvalidArgumentError(f"{unstated}; did you mean {meant!r}?")
+    if own:
+        return InvalidArgumentError(f"{unstated}; {known}")
+    names = dict.fromkeys((*(name for key in keys for name in key.names[:-1]), *_objects(system)))
+    holders = [short_name(key, keys) for key in keys if key.path[-1] == change.key]
+    advice = did_you_mean(change.object, names) or (f"{change.key!r} is a key of {listed(holders)}" if holders else reason)
+    return InvalidArgumentError(f"unknown object {change.object!r}; {advice}" if change.object else f"{unstated}; {advice}")
 
 
-def _advice(change: Change, keys: Sequence[DescriptionKey]) -> str:
-    """The value that is meant: with a similar name, or with the same key in another section."""
+def _meant(change: Change, keys: Sequence[DescriptionKey]) -> str:
+    """The value that is meant: the only one with the key, or one with a similar name; "" if there is none."""
     elsewhere = [short_name(key, keys) for key in keys if key.path[-1] == change.key]
     if len(elsewhere) == 1:
-        return f"did you mean {elsewhere[0]!r}?"
-    names = [name for key in keys if not key.is_part for name in _names(key)]
-    closest = similar(change.target, dict.fromkeys(names), cutoff=0.85)
-    if closest:
-        return f"did you mean {closest[0]!r}?"
-    return f"{change.key!r} is a key of {listed(elsewhere)}" if elsewhere else ""
+        return elsewhere[0]
+    names = (name for key in keys if not key.is_part for name in _names(key))
+    return next(iter(similar(change.target, dict.fromkeys(names), cutoff=0.85)), "")
 
 
 def _names(key: DescriptionKey) -> list[str]:

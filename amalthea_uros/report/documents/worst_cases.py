@@ -107,7 +107,7 @@ def _analyzed(content: ReportContent) -> AnalysisResult:
     return AnalysisResult(
         paths=(),
         task_periods=periods,
-        source=content.source,
+        changed=content.changed,
         system=system,
         settings=settings,
         analysis=content.analysis,
