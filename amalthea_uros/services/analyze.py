@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.priorities.assignment import Proposal
     from amalthea_uros.analyze.results.explanations import CallbackExplanation, ChainExplanation, ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
-    from amalthea_uros.design.description.origin import DescriptionOrigin
     from amalthea_uros.design.improvements import Improvements
 
 
@@ -84,11 +83,6 @@ class AnalysisResult(Brief, Shown):
     with_metrics: bool = False
     differences: tuple[Difference, ...] = ()
     impact: Impact | None = None
-
-    @property
-    def source(self) -> DescriptionOrigin | None:
-        """The app.yaml with the changes; None for other systems."""
-        return None if self.changed is None else self.changed.source
 
 
 @dataclass(frozen=True, slots=True)

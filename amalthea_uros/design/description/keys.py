@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from amalthea_uros.design.description.text_edits import Path, has_list
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.section import DescriptionSection
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.written import Written, section_class, written
 
 #: What identifies an item of a list, the first key that it has.
@@ -65,6 +65,21 @@ class DescriptionKey:
     def full_name(self) -> str:
         """All names."""
         return ".".join(self.names)
+
+
+def is_listed(key: DescriptionKey) -> bool:
+    """Whether a key is shown in lists: single values, and what may be written as one; of its parts, those that are stated."""
+    kind = None if key.item else section_class(key.section, key.field)
+    if kind is not None and (not issubclass(kind, Shorthand) or key.path == ("hardware",)):
+        return False
+    if isinstance(getattr(key.section, key.field), list) and _has_sections(getattr(key.section, key.field)):
+        return False
+    inner = any(isinstance(holder.section, Shorthand) for holder in key.holders[1:] if holder.path != ("hardware",))
+    return not inner or key.section.states(key.field)
+
+
+def _has_sections(items: list[object]) -> bool:
+    return any(isinstance(item, DescriptionSection) for item in items)
 
 
 def keys_of(whole: Description, text: str) -> tuple[DescriptionKey, ...]:
