@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from amalthea_uros._internal.similar import did_you_mean, similar
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.kinds import KINDS
-from amalthea_uros.design.description.keys import DescriptionKey, short_name
+from amalthea_uros.design.description.keys import DescriptionKey, is_listed, short_name
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import listed
 from amalthea_uros.perf.system import System
@@ -37,14 +37,14 @@ def refusal(
         )
     if change.key == "frequency" and change.object in system.cores:
         return InvalidArgumentError(f"{change}: {_CLOCK}")
-    own = listed(list(dict.fromkeys(key.names[-1] for key in keys if change.object in key.names[:-1] and not key.is_part)))
-    known = f"{change.object!r} has {own}" if own else str(reason)
+    own = list(dict.fromkeys(key.names[-1] for key in keys if change.object in key.names[:-1] and is_listed(key)))
+    known = f"{change.object!r} has {listed(own)}" if own else str(reason)
     if _is_built(change, system):
         return InvalidArgumentError(
             f"{change.target!r} is not stated in the description: it follows from other values; {known}"
         )
     unstated = f"{change}: the description has no value {change.target!r}"
-    if meant := _meant(change, keys):
+    if meant := _meant(change, keys, own):
         return InvalidArgumentError(f"{unstated}; did you mean {meant!r}?")
     if own:
         return InvalidArgumentError(f"{unstated}; {known}")
@@ -54,8 +54,10 @@ def refusal(
     return InvalidArgumentError(f"unknown object {change.object!r}; {advice}" if change.object else f"{unstated}; {advice}")
 
 
-def _meant(change: Change, keys: Sequence[DescriptionKey]) -> str:
-    """The value that is meant: the only one with the key, or one with a similar name; "" if there is none."""
+def _meant(change: Change, keys: Sequence[DescriptionKey], own: Sequence[str]) -> str:
+    """The value that is meant: one of the object, the only one with the key, or one with a similar name; "" if there is none."""
+    if near := similar(change.key, own):
+        return f"{change.object}.{near[0]}"
     elsewhere = [short_name(key, keys) for key in keys if key.path[-1] == change.key]
     if len(elsewhere) == 1:
         return elsewhere[0]
