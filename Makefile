@@ -48,7 +48,7 @@ gen: $(READY)
 	$(BIN)/python tools/draw_rooms.py
 	$(BIN)/python tools/generate_benchmarks.py
 	$(BIN)/python tools/run_notebooks.py
-	$(BIN)/amuros sweep samples/bodas-test-advanced.yaml --sweep Message_Factor.period=5ms,10ms,20ms \
+	$(BIN)/amuros sweep samples/bodas-test-advanced.amxmi --sweep Message_Factor.period=5ms,10ms,20ms \
 		--sweep Control_Function.offset=0ms..400us/200us --picture factor-to-output.max_reduced_reaction_time=docs/images/sweep-map.svg
 	$(BIN)/amuros simulate samples/bodas-test-advanced.yaml --gantt docs/images/simulation-gantt.svg --chain factor-to-output
 

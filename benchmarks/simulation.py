@@ -16,6 +16,8 @@ from pathlib import Path
 from random import Random
 from time import perf_counter
 
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.perf import mapping, software, stimuli
 from amalthea_uros.perf import os as perf_os
 from amalthea_uros.perf.activities import Demand, Execute
@@ -206,7 +208,10 @@ def runs(system: System, repeat: int) -> None:
     from amalthea_uros.design.campaign.run import plan_runs
     from amalthea_uros.design.campaign.simulations import SimulationJob
 
-    job, planned = SimulationJob(system, Options(duration=SECOND // 10)), plan_runs([], 1000, 1)
+    job, planned = (
+        SimulationJob(SystemOrigin(Configuration(system, Settings())), Options(duration=SECOND // 10)),
+        plan_runs([], 1000, 1),
+    )
     cores = os.cpu_count() or 1
     for name, executor in (("1 process", serial), (f"{cores} processes", processes(cores))):
         start = perf_counter()

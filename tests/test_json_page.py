@@ -55,7 +55,14 @@ RUNS = {
         ),
     ),
     "amuros sweep": (
-        ("sweep", ADVANCED, "--sweep", "Control_Function.execution_time=4us,2ms", "--set", "Control_Function.period=2ms"),
+        (
+            "sweep",
+            "bodas-test-advanced.amxmi",
+            "--sweep",
+            "Control_Function.execution_time=4us,2ms",
+            "--set",
+            "Control_Function.period=2ms",
+        ),
         ("sweep", "unknown.amxmi", "--sweep", "Control_Function.execution_time=4us,5us", "--sample", "1"),
     ),
     "amuros measure": (
@@ -97,7 +104,10 @@ RUNS = {
     "amuros calibrate": (
         ("calibrate", "bodas-test-measured.yaml", "bodas-test-measured.log", "--markers", "bodas-test-measured.markers.yml"),
     ),
-    "amuros diff": (("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi", "--impact"),),
+    "amuros diff": (
+        ("diff", "bodas-test-advanced.amxmi", "bodas-test-simple.amxmi", "--impact"),
+        ("diff", ADVANCED, "bodas-test-simple.yaml"),
+    ),
     "amuros migrate": (("migrate", "pump-1.2.0.amxmi", "-o", "migrated.amxmi"),),
     "amuros info": (("info", "bodas-test-hardware.amxmi"), ("info", "pump-1.2.0.amxmi")),
     "amuros rules": (("rules", "TIM"),),

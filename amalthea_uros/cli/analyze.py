@@ -21,6 +21,7 @@ from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.analyze import analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.units import shortened
 
 
 @click.command("analyze")
@@ -31,8 +32,8 @@ from amalthea_uros.timing.basics.settings import Settings
     "--out",
     "target",
     type=OUTPUT_FILE,
-    metavar="FILE.amxmi",
-    help="With --set: write the changed model; only the changed values differ from the given one.",
+    metavar="FILE",
+    help="With --set: write the changed model (.amxmi) or app.yaml; only the changed values differ from the given one.",
 )
 @analysis_options
 @click.option("--chain", metavar="CHAIN", help="Show all values of one event chain, and the links between its events.")
@@ -65,6 +66,12 @@ from amalthea_uros.timing.basics.settings import Settings
 @fail_on_option
 @click.option("--assign-priorities", "with_priorities", is_flag=True, help="Propose priorities that meet all deadlines.")
 @metrics_option
+@click.option(
+    "--keys",
+    "with_keys",
+    is_flag=True,
+    help="Only list the values that --set, --sweep and --offer can change, with their present values.",
+)
 @output_option("AnalysisResult")
 def analyze(
     paths: tuple[Path, ...],
@@ -76,6 +83,7 @@ def analyze(
     explained: str | None,
     quantity: str,
     fail_on: str,
+    with_keys: bool,
     outputs: tuple[Output, ...],
     **wanted: bool,
 ) -> None:
@@ -86,6 +94,14 @@ def analyze(
     are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded. With --set the system is
     changed first, and a table compares the results before and after.
     """
+    if with_keys:
+        from amalthea_uros.services.keys import keys
+
+        values = keys(paths)
+        width = max((len(each.name) for each in values), default=0)
+        for each in values:
+            click.echo(output_line(f"{each.name:<{width}}  {shortened(each.value)}"))
+        return
     if target is not None:
         if not changes:
             raise click.UsageError(f"-o writes a changed model; add a change, e.g. --set {EXAMPLE}")

@@ -50,13 +50,13 @@ def diff(old: Path, new: Path, with_impact: bool, outputs: tuple[Output, ...]) -
     OLD and NEW are files, folders with .amxmi files, or an app.yaml, whose model is built in memory. Objects are compared by their
     names, in whatever file they are; order without meaning, layout, ids and explicit defaults make no difference. Models of different
     AMALTHEA versions are migrated to the newest one in memory. What changes the timing is shown first, in words such as period,
-    priority and execution time. Exit code 1 if there are differences.
+    priority and execution time. Two app.yaml are compared by the values that they state. Exit code 1 if there are differences.
     """
     from amalthea_uros.services import diff as service
 
     result = service.diff(old, new, with_impact=with_impact)
     show_result(result, outputs)
-    sys.exit(1 if result.changes else 0)
+    sys.exit(1 if result.changes or result.described else 0)
 
 
 @click.command("fmt")

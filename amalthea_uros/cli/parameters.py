@@ -80,6 +80,8 @@ class PositiveNumber(click.FloatRange):
 
 
 POSITIVE = PositiveNumber()
+
+
 def picture_path(text: str) -> Path:
     """A picture that is given as part of an option; ValueError for another suffix."""
     return PICTURE.checked(output_path(text))

@@ -31,8 +31,8 @@ from amalthea_uros.design.campaign.run import count_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult
 from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes.change import Change, Sweep
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.simulate import SimulationResult, simulate_campaign, simulate_changed
-from amalthea_uros.services.subject import open_changed
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time, parse_time, time_text

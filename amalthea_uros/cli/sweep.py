@@ -26,8 +26,8 @@ from amalthea_uros.cli.parameters import assignment, picture_path
 from amalthea_uros.design.campaign.sweeps import SweepResult, plan_sweep
 from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes.change import Change, Sweep
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.files import save_text
-from amalthea_uros.services.subject import open_changed
 from amalthea_uros.services.sweep import sweep_changed
 from amalthea_uros.timing.basics.settings import Settings
 

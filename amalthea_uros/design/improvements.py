@@ -18,6 +18,9 @@ from amalthea_uros.analyze.system import analyze_while
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.description.advice import suggestions
+from amalthea_uros.design.description.edit import edit_description
+from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.stimuli import Periodic
@@ -37,13 +40,17 @@ class ImprovingChange:
     Attributes
     ----------
     text : in words, with the values before and after
-    changes : of the system; two if priorities are exchanged
+    changes : of the system or its description; two if priorities are exchanged, more if changes are combined
     communication : of all label accesses; None if it stays
+    is_stated : whether the changes are those of a description
+    is_combined : whether several changes are made together that also help one by one
     """
 
     text: str
     changes: tuple[Change, ...] = ()
     communication: Communication | None = None
+    is_stated: bool = False
+    is_combined: bool = False
 
     @property
     def options(self) -> tuple[str, ...]:
@@ -59,7 +66,11 @@ class ImprovingChange:
 
 
 def candidates(
-    explanation: ChainExplanation, analysis: Analysis, present: Configuration, offered: Sequence[Time]
+    explanation: ChainExplanation,
+    analysis: Analysis,
+    present: Configuration,
+    offered: Sequence[Time],
+    source: DescriptionOrigin | None = None,
 ) -> list[ImprovingChange]:
     """The changes to try, of each sort in turn, so that a limit of their number cuts all sorts.
 
@@ -69,10 +80,12 @@ def candidates(
     """
     processes = _by_share(explanation, analysis)
     sorts = (
+        () if source is None else _of_description(source),
         _periods(processes, analysis.solution.context.system, offered),
         _priorities(processes, analysis),
         _offsets(explanation, analysis.solution.context.system),
-        _clocks(processes, analysis),
+        # The execution times of a description are those at the present clock.
+        _clocks(processes, analysis) if source is None else (),
         _communication(explanation, present),
     )
     every = joined.from_iterable(zip_longest(*sorts))
@@ -141,10 +154,18 @@ def _offsets(explanation: ChainExplanation, system: System) -> Iterator[Improvin
 
 
 def _clocks(processes: Sequence[str], analysis: Analysis) -> Iterator[ImprovingChange]:
+    wires = {core for wire in analysis.solution.context.system.network.wires for core in wire.cores}
     for core in dict.fromkeys(analysis.processes[name].processor for name in processes):
+        if core in wires:
+            continue  # their drivers also wait in ticks, which no other bit rate makes shorter
         frequency = analysis.processors[core].frequency if core is not None else None
         if core is not None and frequency is not None:
             yield _of_process(core, "frequency", frequency_text(frequency), frequency_text(2 * frequency))
+
+
+def _of_description(source: DescriptionOrigin) -> Iterator[ImprovingChange]:
+    for each in suggestions(source.keys):
+        yield ImprovingChange(text=each.text, changes=(each.change,), is_stated=True)
 
 
 def _communication(explanation: ChainExplanation, present: Configuration) -> Iterator[ImprovingChange]:
@@ -207,7 +228,7 @@ class Improvements(Shown):
 
     Attributes
     ----------
-    found : the shortest latency first
+    found : the shortest latency first, then combinations of them, from two changes on
     tried : number of changed systems that were analysed
     untried : number of changes that were not, because there are too many
     """
@@ -228,11 +249,19 @@ class Improvements(Shown):
         for each in self.found:
             targets = tuple(change.target for change in each.change.changes)
             different.setdefault((*targets, each.change.communication, each.after), each)
-        return tuple(islice(different.values(), count))
+        every = tuple(different.values())
+        singles = [each for each in every if not each.change.is_combined]
+        combined = [each for each in every if each.change.is_combined][-_SHOWN_COMBINATIONS:]
+        return (*singles[: count - len(combined)], *combined)
 
 
-def improvements_of(analysis: Analysis, explanation: ChainExplanation, offered: Sequence[Time] = ()) -> Improvements:
-    """Try single changes of a system, and rank those that shorten an explained latency.
+def improvements_of(
+    analysis: Analysis,
+    explanation: ChainExplanation,
+    offered: Sequence[Time] = (),
+    source: DescriptionOrigin | None = None,
+) -> Improvements:
+    """Try single changes of a system, then the best of them together, and rank those that shorten an explained latency.
 
     Periods are only shortened: with a longer period of the first process, inputs wait longer before the chain begins, which a latency
     that begins there does not include.
@@ -240,26 +269,113 @@ def improvements_of(analysis: Analysis, explanation: ChainExplanation, offered: 
     Parameters
     ----------
     offered : the periods that tasks can have; empty if they can have any
+    source : the description of the system, which is what changes; None for other systems
     """
-    chain, quantity = explanation.chain.name, explanation.quantity
     context = analysis.solution.context
     present = Configuration(context.system, context.settings)
-    every = candidates(explanation, analysis, present, offered)
-    applied = [(each, changed) for each in every if (changed := _applied(each, present)) is not None]
+    trial = Trial(analysis, present, explanation.chain.name, explanation.quantity, source)
+    every = candidates(explanation, analysis, present, offered, source)
+    # Of a description, each is built to find out whether it is possible, so that no more of them are than are tried.
+    prepared = list(islice((pair for one in every for pair in trial.prepared(one)), None if source is None else MAX_ANALYSES))
     most = min(MAX_ANALYSES, max(MIN_ANALYSES, MAX_PROCESSES // max(1, len(analysis.processes))))
-    found, tried = [], 0
-    for candidate, changed in islice(applied, most):
+    singles = [found for each, changed in islice(prepared, most) if (found := trial.tried(each, changed)) is not None]
+    ranked = sorted(singles, key=rank)
+    return Improvements(
+        chain=trial.chain,
+        quantity=trial.quantity,
+        found=(*ranked, *trial.combined(ranked)),
+        tried=trial.count,
+        untried=max(0, len(prepared) - most) if source is None or len(prepared) < MAX_ANALYSES else len(every) - most,
+    )
+
+
+def rank(found: Improvement) -> tuple[Time, bool]:
+    """The shortest latency first."""
+    return found.after, not found.is_safe
+
+
+#: Of the combinations, so many are shown, those with the most changes.
+_SHOWN_COMBINATIONS = 2
+#: So many changes are tried together at most: the more there are, the less is known of which of them are needed.
+MAX_COMBINED = 3
+
+
+@dataclass(slots=True)
+class Trial:
+    """Tries changes.
+
+    Attributes
+    ----------
+    count : of changed systems that were analysed
+    """
+
+    analysis: Analysis
+    present: Configuration
+    chain: str
+    quantity: LatencyQuantity
+    source: DescriptionOrigin | None
+    count: int = 0
+
+    def prepared(self, candidate: ImprovingChange) -> Iterator[tuple[ImprovingChange, Configuration]]:
+        """A candidate with its changed system; nothing if it is impossible, or changes how often messages come."""
         try:
-            after = analyze_while(*changed, partial(_is_shorter, chain, quantity, _latency(analysis, chain, quantity)))
+            if self.source is not None and candidate.changes and not candidate.is_stated:
+                if _applied(candidate, self.present) is None:
+                    return
+                edited = edit_description(self.source.text, self.source.path, candidate.changes)
+                candidate = replace(candidate, changes=self.source.changes_of(edited.assignments), is_stated=True)
+            if self.source is None:
+                changed = _applied(candidate, self.present)
+            else:
+                changed = candidate.with_communication(self.source.configure(candidate.changes))
         except InvalidArgumentError:
-            continue
-        tried += 1
+            return
+        if changed is not None:
+            yield candidate, changed
+
+    def tried(self, candidate: ImprovingChange, changed: Configuration) -> Improvement | None:
+        """What an analysis says about a changed system; None if the latency does not get shorter."""
+        try:
+            after = analyze_while(*changed, partial(_is_shorter, self.chain, self.quantity, self._before))
+        except InvalidArgumentError:
+            return None
+        self.count += 1
         if after is None:
-            continue
-        differences = describe(*present, candidate.changes)
-        found.append(_improvement(candidate, differences, chain, quantity, analysis, after))
-    ranked = sorted(filter(None, found), key=lambda each: (each.after, not each.is_safe))
-    return Improvements(chain=chain, quantity=quantity, found=tuple(ranked), tried=tried, untried=max(0, len(applied) - most))
+            return None
+        return _improvement(candidate, self._differences(candidate), self.chain, self.quantity, self.analysis, after)
+
+    @property
+    def _before(self) -> Time | None:
+        return _latency(self.analysis, self.chain, self.quantity)
+
+    def combined(self, ranked: Sequence[Improvement]) -> Iterator[Improvement]:
+        """The best changes of a description together, one more at a time, as long as each of them helps."""
+        if self.source is None or not ranked:
+            return
+        best = ranked[0]
+        for other in ranked[1:]:
+            both = _together(best.change, other.change)
+            if both is None or len(both.changes) > MAX_COMBINED:
+                continue
+            for candidate, changed in self.prepared(both):
+                found = self.tried(candidate, changed)
+                if found is not None and found.after < min(best.after, other.after):
+                    best = found
+                    yield found
+
+    def _differences(self, candidate: ImprovingChange) -> tuple[Difference, ...]:
+        if self.source is None:
+            return describe(*self.present, candidate.changes)
+        return tuple(each for each in self.source.differences(candidate.changes) if not each.is_consequence)
+
+
+def _together(one: ImprovingChange, other: ImprovingChange) -> ImprovingChange | None:
+    """Two changes together; None if they set the same value, or a communication."""
+    targets = [change.target for change in (*one.changes, *other.changes)]
+    if len(set(targets)) < len(targets) or one.communication is not None or other.communication is not None:
+        return None
+    changes = (*one.changes, *other.changes)
+    return ImprovingChange(text=f"{one.text}, {other.text}", changes=changes, is_stated=True, is_combined=True)
 
 
 def _is_shorter(chain: str, quantity: LatencyQuantity, before: Time | None, for_a_phase: Analysis) -> bool:

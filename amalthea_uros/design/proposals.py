@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
@@ -13,13 +12,17 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.description.edit import edit_description, is_structural
+from amalthea_uros.design.description.origin import ASSUMED, DescriptionOrigin
 from amalthea_uros.design.optimize.choices import Wishes, design_space
+from amalthea_uros.design.optimize.designs import Designs
 from amalthea_uros.design.optimize.evaluation import DesignEvaluator
 from amalthea_uros.design.optimize.goals import GoalScale, goals_of, latency_limits, named_by
 from amalthea_uros.design.optimize.lower_bounds import sampled_chains
 from amalthea_uros.design.optimize.problem import DesignEvaluation, Feasibility, Problem
 from amalthea_uros.design.optimize.quantities import FROM_ARRIVAL, Figures, Limit, Range, check_limit, parse_limit, takers
-from amalthea_uros.perf.system import System
+from amalthea_uros.design.optimize.space import Candidate
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.uros.assemble import Assembly
 
 
@@ -44,9 +47,8 @@ class DesignProposal(Shown):
     Attributes
     ----------
     differences : the changed values, before and after
-    changes : all that is set, also what follows from the changed values, such as the jobs that take messages
-    value_changes : those of them that are values of a system
-    rebuilt : the system in which they are set, if only a changed description describes it; otherwise None
+    changes : all that is set, also what follows from the changed values, such as the jobs that take messages; of a description,
+        what is written in it
     analysis : of the changed system
     configuration : its system and settings
     impact : what the changes do to all results
@@ -56,8 +58,6 @@ class DesignProposal(Shown):
     evaluation: DesignEvaluation
     differences: tuple[Difference, ...]
     changes: tuple[Change, ...]
-    value_changes: tuple[Change, ...]
-    rebuilt: System | None
     analysis: Analysis
     configuration: Configuration
     impact: Impact
@@ -73,8 +73,8 @@ class DesignProposal(Shown):
 
     @property
     def options(self) -> tuple[str, ...]:
-        """The options with which `amuros analyze` analyses it; none for a design that only a description states."""
-        return () if self.rebuilt is not None else tuple(part for change in self.changes for part in ("--set", str(change)))
+        """The options with which `amuros analyze` analyses it."""
+        return tuple(part for change in self.changes for part in ("--set", str(change)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,18 +85,20 @@ class SearchPlan:
     ----------
     before : the analysis of the present design
     evaluator : judges the designs of the problem
+    source : the text of the description; None for other systems
     """
 
     problem: Problem
     before: Analysis
     evaluator: DesignEvaluator
+    source: DescriptionOrigin | None = None
 
 
 def plan_search(
     present: Configuration,
     wishes: Wishes,
     assembly: Assembly | None = None,
-    source: tuple[str, Path] | None = None,
+    source: DescriptionOrigin | None = None,
     *,
     limits: Iterable[str | Limit] = (),
     goals: Sequence[str] = (),
@@ -108,7 +110,7 @@ def plan_search(
     Parameters
     ----------
     assembly : of the description of the system; None if it has none
-    source : the text of the description, and its file
+    source : the text of the description
     limits, goals, may_be_later, seed : as for `optimize`
 
     Raises
@@ -137,7 +139,7 @@ def plan_search(
         seed=seed,
         named=frozenset([(limit.object, limit.quantity) for limit in evaluator.limits]) | named_by(evaluator.goals),
     )
-    return SearchPlan(problem=problem, before=before, evaluator=evaluator)
+    return SearchPlan(problem=problem, before=before, evaluator=evaluator, source=source)
 
 
 def _not_later(before: Analysis, figures: Figures) -> Iterator[Limit]:
@@ -148,22 +150,33 @@ def _not_later(before: Analysis, figures: Figures) -> Iterator[Limit]:
             yield Limit(object=chain.name, quantity=FROM_ARRIVAL, maximum=found.upper, reason="not later than now")
 
 
-def proved_proposal(evaluation: DesignEvaluation, evaluator: DesignEvaluator, before: Analysis) -> DesignProposal:
-    """A proposal, proved by a full analysis of its own."""
-    designs = evaluator.designs
-    stated, values = designs.divided(evaluation.candidate)
-    built = designs.built(stated)
-    configuration = designs.configure(evaluation.candidate)
+def proved_proposal(
+    evaluation: DesignEvaluation, evaluator: DesignEvaluator, before: Analysis, source: DescriptionOrigin | None = None
+) -> DesignProposal | None:
+    """A proposal, proved by a full analysis of its own: of the edited description if there is one, otherwise of the changed system.
+
+    Returns
+    -------
+    None : no description states the design, or the edited one is another design than the one that was judged.
+    """
+    designs, candidate = evaluator.designs, evaluation.candidate
+    if source is None:
+        changes, configuration = designs.changes(candidate), designs.configure(candidate)
+    else:
+        try:
+            changes = _in_description(designs, candidate, source)
+            configuration = source.configure(changes)
+        except InvalidArgumentError:
+            return None
     analysis = analyze_system(*configuration)
-    again = evaluator.judged(evaluation.candidate, analysis)
-    assert again == evaluation, "a design was judged in two ways"
-    figures = evaluator.figures(evaluation.candidate, analysis)
+    if evaluator.judged(candidate, analysis) != evaluation:
+        assert source is not None, "a design was judged in two ways"
+        return None
+    figures = evaluator.figures(candidate, analysis)
     return DesignProposal(
         evaluation=evaluation,
-        differences=designs.describe(evaluation.candidate),
-        changes=designs.changes(evaluation.candidate),
-        value_changes=built.value_changes(values),
-        rebuilt=built.present.system if stated else None,
+        differences=designs.describe(candidate),
+        changes=changes,
         analysis=analysis,
         configuration=configuration,
         impact=impact(before, analysis),
@@ -172,3 +185,20 @@ def proved_proposal(evaluation: DesignEvaluation, evaluator: DesignEvaluator, be
             for limit in evaluator.limits
         ),
     )
+
+
+def _in_description(designs: Designs, candidate: Candidate, source: DescriptionOrigin) -> tuple[Change, ...]:
+    """What is written in a description for a design, and what of it no description states.
+
+    Raises
+    ------
+    InvalidArgumentError : no description states it.
+    """
+    own, values = designs.divided(candidate)
+    stated = designs.described_changes(own)
+    written = tuple(change for change in stated if not is_structural(change))
+    assumed = tuple(change for change in values if change.key in ASSUMED)
+    others = tuple(change for change in designs.built(own).value_changes(values) if change not in assumed)
+    structural = tuple(change for change in stated if is_structural(change))
+    edited = edit_description(source.edited(written), source.path, (*structural, *others))
+    return (*written, *source.changes_of(edited.assignments), *assumed)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -21,7 +21,8 @@ from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.analysis_findings import shown_findings
-from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
+from amalthea_uros.services.changed import ChangedSystem, open_changed
+from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
@@ -59,6 +60,7 @@ class AnalysisResult(Brief, Shown):
     Attributes
     ----------
     task_periods : those that an app.yaml offers to tasks
+    changed : what was analysed; None if only an analysis is known
     findings : problems found while reading the files, and what the analysis could not take into account
     sensitivity, proposals, explanation : None if they were not requested
     all_methods : whether the values of all methods are shown, or the tightest ones
@@ -69,6 +71,7 @@ class AnalysisResult(Brief, Shown):
 
     paths: tuple[Path, ...]
     task_periods: tuple[Time, ...] = ()
+    changed: ChangedSystem | None = field(default=None, compare=False)
     system: System
     settings: Settings
     analysis: Analysis
@@ -158,6 +161,7 @@ def analyze_files(
     return AnalysisResult(
         paths=changed.opened.paths,
         task_periods=changed.opened.task_periods,
+        changed=changed,
         system=changed.system,
         settings=changed.settings,
         analysis=analysis,
@@ -188,6 +192,7 @@ def analysis_result(analyzed: Analyzed) -> AnalysisResult:
     if isinstance(analyzed, AnalysisResult):
         return analyzed
     offered: tuple[Time, ...] = ()
+    changed = None
     if not isinstance(analyzed, Analysis):
         changed = open_changed(analyzed)
         analyzed, offered = _analyzed(changed), changed.opened.task_periods
@@ -195,6 +200,7 @@ def analysis_result(analyzed: Analyzed) -> AnalysisResult:
     return AnalysisResult(
         paths=(),
         task_periods=offered,
+        changed=changed,
         system=context.system,
         settings=context.settings,
         analysis=analyzed,

@@ -7,15 +7,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.files import read_text
-from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system, update_model
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.services.changed import description_origin
 from amalthea_uros.services.files import save_text
-from amalthea_uros.services.subject import Subject, as_model, open_system
+from amalthea_uros.services.subject import Subject, SystemInput, as_model, open_system
 from amalthea_uros.timing.basics.settings import Settings
 
 if TYPE_CHECKING:
@@ -24,12 +23,13 @@ if TYPE_CHECKING:
 
 
 def write_changed(subject: Subject, changes: Sequence[Change], settings: Settings, path: StrPath) -> None:
-    """Write the model of a changed system.
+    """Write the model of a changed system, or an edited description.
 
     Parameters
     ----------
     subject : files, a model or a system, without the changes
     settings : without the changes; the model does not state them
+    path : of a model; of an app.yaml also of a description, in which only the changed values differ
 
     Raises
     ------
@@ -38,11 +38,15 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
     """
     from amalthea_uros.xmi.save import save
 
-    if is_description(path):
-        advice = "give a file with the suffix .amxmi, or change the values in the description itself"
-        raise InvalidArgumentError(f"{path}: a changed system is written as an AMALTHEA model, not as a description; {advice}")
     given = as_model(subject)
     opened = None if given is not None else open_system(subject)
+    if opened is not None and opened.assembly is not None:
+        _write_edited(opened, changes, settings, path)
+        return
+    if is_description(path):
+        raise InvalidArgumentError(
+            f"{path}: a changed system is written as an AMALTHEA model, not as a description; give a file with the suffix .amxmi"
+        )
     model = given if opened is None else opened.model
     if model is None:
         from amalthea_uros.bridge.build import build_model
@@ -61,6 +65,19 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
         model = _copied(model)  # the caller keeps the model without the changes
     update_model(model, changes, settings)
     save(model, path)
+
+
+def _write_edited(opened: SystemInput, changes: Sequence[Change], settings: Settings, path: StrPath) -> None:
+    """Write an edited description, or the model that is built from it."""
+    from amalthea_uros.bridge.build import build_model
+    from amalthea_uros.xmi.save import save
+
+    origin = description_origin(opened, settings)
+    if is_description(path):
+        save_text(path, origin.edited(changes))
+        return
+    edited, assumed = origin.rebuilt(changes)
+    save(build_model(changed_system(edited, assumed, settings)), path)
 
 
 def _copied(model: Model) -> Model:
@@ -100,22 +117,4 @@ def write_proposal(result: Optimization, number: int, path: StrPath) -> None:
     if number > len(result.proposals):
         found = f"only {len(result.proposals)} were found" if result.proposals else "none was found"
         raise InvalidArgumentError(f"there is no proposal {number} to write to {path}: {found}")
-    proposal = result.proposals[number - 1]
-    if is_description(path):
-        _write_description(result.paths, proposal.changes, path)
-    elif proposal.rebuilt is not None:
-        write_changed(proposal.rebuilt, proposal.value_changes, result.settings, path)
-    else:
-        write_changed(result.subject, proposal.changes, result.settings, path)
-
-
-def _write_description(paths: Sequence[Path], changes: Sequence[Change], path: StrPath) -> None:
-    """Write the description that was read with changes."""
-    from amalthea_uros.design.description.edit import edit_description
-
-    if len(paths) != 1 or not is_description(paths[0]):
-        raise InvalidArgumentError(
-            f"{path}: only a proposal for an app.yaml is written as one; give a file with the suffix .amxmi"
-        )
-    text = read_text(paths[0], DESCRIPTION_SIZE)
-    save_text(path, edit_description(text, paths[0], changes).text)
+    write_changed(result.subject, result.proposals[number - 1].changes, result.settings, path)

@@ -20,8 +20,9 @@ from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.inputs import as_paths
-from amalthea_uros.services.subject import Subject, open_changed
+from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
 
 #: What was measured, or the trace to measure.

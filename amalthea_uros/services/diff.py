@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.files import read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.bridge.extract import extract
+from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.timing_changes import TimingChange, timing_changes
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.difference.comparison import ModelChange, difference
@@ -37,6 +40,7 @@ class DiffResult(Brief, Shown):
     old, new : the paths that were compared, or those of the documents of a model
     findings : which models were migrated in memory, so that models of different versions can be compared
     timing : the differences that matter for times, by object
+    described : of two descriptions, the values and objects in which they differ; those of the built models follow from them
     impact : what all differences do to the results of an analysis; None if it was not requested
     """
 
@@ -45,6 +49,7 @@ class DiffResult(Brief, Shown):
     changes: tuple[ModelChange, ...]
     findings: tuple[Finding, ...] = ()
     timing: tuple[TimingChange, ...] = ()
+    described: tuple[Difference, ...] = ()
     impact: Impact | None = None
 
 
@@ -79,8 +84,20 @@ def diff(old: Model | StrPath, new: Model | StrPath, *, with_impact: bool = Fals
         changes=changes,
         findings=tuple(dict.fromkeys(findings)),
         timing=timing_changes(*systems) if changes else (),
+        described=_described(old, new),
         impact=_impact(systems) if with_impact else None,
     )
+
+
+def _described(old: Model | StrPath, new: Model | StrPath) -> tuple[Difference, ...]:
+    """The differences of two descriptions; none of others."""
+    sides = [Path(one) for one in (old, new) if not isinstance(one, Model) and is_description(one)]
+    if len(sides) < 2:
+        return ()
+    from amalthea_uros.design.description.comparison import description_differences
+
+    before, after = (read_text(side, DESCRIPTION_SIZE) for side in sides)
+    return description_differences(before, sides[0], after, sides[1])
 
 
 def _impact(systems: Sequence[System]) -> Impact:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from amalthea_uros.analyze.explanations.chains import explain_chain
 from amalthea_uros.analyze.explanations.processes import explain_callback, explain_process
 from amalthea_uros.analyze.results.chains import LatencyQuantity
+from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.improvements import Improvements, check_explained, improvements_of
 from amalthea_uros.names import require
-from amalthea_uros.services.analyze import Analyzed, Explanation, analysis_result
+from amalthea_uros.services.analyze import AnalysisResult, Analyzed, Explanation, analysis_result
 from amalthea_uros.uros.application.callbacks import body_name
 
 
@@ -41,7 +42,7 @@ def explain(
         process=explain_process(analysis, name) if name in system.processes else None,
         chain=chain,
         callbacks=explain_callback(analysis, name),
-        improvements=None if chain is None else improvements_of(analysis, chain, result.task_periods),
+        improvements=None if chain is None else improvements_of(analysis, chain, result.task_periods, _source(result)),
     )
 
 
@@ -62,4 +63,10 @@ def improvements(
     result = analysis_result(analyzed)
     require("chain", [chain], result.system.chains)
     check_explained(quantity)
-    return improvements_of(result.analysis, explain_chain(result.analysis, chain, quantity), result.task_periods)
+    explained = explain_chain(result.analysis, chain, quantity)
+    return improvements_of(result.analysis, explained, result.task_periods, _source(result))
+
+
+def _source(result: AnalysisResult) -> DescriptionOrigin | None:
+    """The description that was analysed, with the changes of values; None for other systems."""
+    return None if result.changed is None else result.changed.source

@@ -7,16 +7,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 
-from amalthea_uros._internal.files import read_text
-from amalthea_uros._internal.limits import DESCRIPTION_SIZE
-from amalthea_uros._internal.paths import TEXT
+from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.design.changes.change import Sweep, parse_sweep
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary, Wishes
 from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.parallel_evaluation import evaluator_on
-from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal, SearchResult
+from amalthea_uros.design.optimize.problem import Conclusion, DesignEvaluation, Goal, SearchResult
 from amalthea_uros.design.optimize.quantities import Limit
 from amalthea_uros.design.optimize.search import search
 from amalthea_uros.design.optimize.space import Space
@@ -24,7 +22,8 @@ from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_sear
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
-from amalthea_uros.services.subject import Subject, SystemInput, open_changed
+from amalthea_uros.services.changed import description_origin, open_changed
+from amalthea_uros.services.subject import Subject, SystemInput
 from amalthea_uros.timing.basics.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.
@@ -88,17 +87,12 @@ def plan_optimization(
 ) -> OptimizationPlan:
     """Read what describes a system, and find out what may change; parameters and errors as for `optimize`."""
     changed = open_changed(subject, settings)
-    opened, source = changed.opened, None
-    if opened.assembly is not None:
-        if opened.paths:
-            source = read_text(opened.paths[0], DESCRIPTION_SIZE), opened.paths[0]
-        elif isinstance(subject, str):
-            source = subject, TEXT
+    opened = changed.opened
     plan = plan_search(
         changed.given,
         wishes or Wishes(),
         opened.assembly,
-        source,
+        None if opened.assembly is None else description_origin(opened, changed.given.settings),
         limits=limits,
         goals=goals,
         may_be_later=may_be_later,
@@ -108,6 +102,7 @@ def plan_optimization(
         problem=plan.problem,
         before=plan.before,
         evaluator=plan.evaluator,
+        source=plan.source,
         opened=opened,
         findings=unsuppressed((*opened.findings, *plan.before.findings)),
     )
@@ -180,6 +175,7 @@ def optimize(
 def found_by(plan: OptimizationPlan, found: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
     """The outcome of a search, each proposal proved by a full analysis of its own."""
     problem, evaluator, before = plan.problem, plan.evaluator, plan.before
+    proved, found = _proved(plan, found, proposals)
     return Optimization(
         subject=plan.opened.subject,
         paths=plan.opened.paths,
@@ -188,10 +184,34 @@ def found_by(plan: OptimizationPlan, found: SearchResult, proposals: int = MOST_
         goals=problem.goals,
         before=before,
         present=evaluator.judged((), before),
-        proposals=tuple(proved_proposal(each, evaluator, before) for each in found.best[:proposals]),
+        proposals=proved,
         search=found,
         findings=plan.findings,
         settings=problem.present.settings,
+    )
+
+
+def _proved(plan: OptimizationPlan, found: SearchResult, count: int) -> tuple[tuple[DesignProposal, ...], SearchResult]:
+    """The proposals, and what the search says without the designs that the edited description does not confirm."""
+    proved, refuted = list[DesignProposal](), list[DesignEvaluation]()
+    for each in found.best:
+        if len(proved) == count:
+            break
+        proposal = proved_proposal(each, plan.evaluator, plan.before, plan.source)
+        if proposal is None:
+            refuted.append(each)
+        else:
+            proved.append(proposal)
+    if not refuted:
+        return tuple(proved), found
+    best = tuple(each for each in found.best if each not in refuted)
+    reason = f"{counted(len(refuted), 'design')} of the system cannot be stated in the description"
+    return tuple(proved), replace(
+        found,
+        best=best,
+        front=tuple(each for each in found.front if each not in refuted),
+        conclusion=Conclusion.BEST_FOUND if best else Conclusion.NOT_FOUND,
+        ended="; ".join(filter(None, (found.ended, reason))),
     )
 
 

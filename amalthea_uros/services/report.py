@@ -16,10 +16,11 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.check import check_input
 from amalthea_uros.services.inputs import ModelInput
 from amalthea_uros.services.simulate import SimulationResult
-from amalthea_uros.services.subject import Subject, SystemInput, open_changed
+from amalthea_uros.services.subject import Subject, SystemInput
 from amalthea_uros.services.waiting_messages import findings_of, with_analysed_storage
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.activation.load import activation_rates
@@ -28,6 +29,7 @@ from amalthea_uros.units import MILLISECOND, SECOND, Time
 
 if TYPE_CHECKING:
     from amalthea_uros.findings.presentation import Presentation
+    from amalthea_uros.services.changed import ChangedSystem
     from amalthea_uros.uros.assemble import Assembly
 
 #: How long a run may be if nobody says it, the longest first.
@@ -50,6 +52,7 @@ class ReportContent:
     ----------
     title : by default, the names of the files
     date : as the caller states it; "" for none, so that the same input gives the same report
+    changed : what the report is about
     system, settings : with the changes
     before : the analysis without the changes; None if there are none
     differences : what the changes did
@@ -62,6 +65,7 @@ class ReportContent:
 
     title: str
     date: str = ""
+    changed: ChangedSystem | None = None
     system: System
     settings: Settings
     analysis: Analysis
@@ -126,6 +130,7 @@ def compile_report(
     return ReportContent(
         title=title or _name(opened),
         date=date,
+        changed=changed,
         system=system,
         settings=changed.settings,
         analysis=analysis,

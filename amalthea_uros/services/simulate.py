@@ -21,7 +21,8 @@ from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
+from amalthea_uros.services.changed import ChangedSystem, open_changed
+from amalthea_uros.services.subject import Subject
 from amalthea_uros.simulate.options import ALL_LABELS, Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
 
@@ -187,7 +188,7 @@ def simulate_campaign(
     changed = open_changed(paths, options.settings, changes, with_bus=with_bus)
     changed.check_sweeps(sweeps)
     _require_labels(options.labels, changed.system)
-    job, executor = SimulationJob(changed.given.system, options, changed.changes), executor_for(len(runs), workers, cluster)
+    job, executor = SimulationJob(changed.origin, options, changed.changes), executor_for(len(runs), workers, cluster)
     return CampaignResult(
         paths=changed.opened.paths,
         options=options,

@@ -9,10 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.paths import TEXT, StrPath
-from amalthea_uros.design.changes.apply import Difference, apply
-from amalthea_uros.design.changes.change import Change, Changes, Sweep, as_changes
-from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.timing_changes import described
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
@@ -61,32 +57,6 @@ class SystemInput:
         return () if self.assembly is None else self.assembly.task_periods
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChangedSystem:
-    """A system that was opened, and what changes of its values make of it.
-
-    Attributes
-    ----------
-    given : the system and the settings without the changes
-    system, settings : with the changes
-    differences : what the changes did
-    """
-
-    opened: SystemInput
-    given: Configuration
-    changes: tuple[Change, ...]
-    system: System
-    settings: Settings
-    differences: tuple[Difference, ...]
-
-    def check_sweeps(self, sweeps: Iterable[Sweep]) -> None:
-        """Refuse names and values that cannot be swept, before the first run; the ends of each sweep are tried."""
-        for sweep in sweeps:
-            for value in (sweep.values[0], sweep.values[-1]):
-                changed = apply(*self.given, (*self.changes, Change(sweep.object, sweep.key, value)))
-                require_settings(changed.settings, changed.system)
-
-
 def open_system(subject: Subject, *, with_bus: bool = False) -> SystemInput:
     """The system of files, of a description as text or dict, of an AMALTHEA model, or the given one, with the findings about it.
 
@@ -128,26 +98,6 @@ def open_system(subject: Subject, *, with_bus: bool = False) -> SystemInput:
     found = extract(model)
     findings = (*model.findings, *found.findings)
     return SystemInput(subject=paths or subject, paths=paths, system=found.system, model=model, findings=findings)
-
-
-def open_changed(
-    subject: Subject, settings: Settings | None = None, changes: Changes = (), *, with_bus: bool = False
-) -> ChangedSystem:
-    """The system of a subject with changes of its values; parameters and errors as for `open_system`.
-
-    Raises
-    ------
-    InvalidArgumentError : the changes or settings name what does not exist, or a value is wrong.
-    """
-    opened, parsed = open_system(subject, with_bus=with_bus), as_changes(changes)
-    given = Configuration(opened.system, settings or Settings())
-    require_settings(given.settings, given.system)
-    differences = described(given, parsed) if parsed else ()
-    system, changed_settings = apply(*given, parsed)
-    require_settings(changed_settings, system)
-    return ChangedSystem(
-        opened=opened, given=given, changes=parsed, system=system, settings=changed_settings, differences=differences
-    )
 
 
 def as_model(subject: object) -> Model | None:

@@ -10,7 +10,8 @@ from amalthea_uros.design.campaign.run import RunOutcome
 from amalthea_uros.design.campaign.sweeps import AnalysisJob, SweepPlan, SweepResult, Sweeps, as_sweeps, plan_sweep
 from amalthea_uros.design.changes.change import Changes
 from amalthea_uros.findings.accepted import unsuppressed
-from amalthea_uros.services.subject import ChangedSystem, Subject, open_changed
+from amalthea_uros.services.changed import ChangedSystem, open_changed
+from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
 
 #: So many variants are analysed by this process, unless somebody says by how many: others would take longer to start.
@@ -71,7 +72,7 @@ def sweep_changed(
     executor = executor_for(len(plan.runs), 1 if few else workers, cluster)
     return SweepResult(
         plan=plan,
-        outcomes=finished_runs(AnalysisJob(*changed.given, changed.changes, with_growth), plan.runs, executor, on_outcome),
+        outcomes=finished_runs(AnalysisJob(changed.origin, changed.changes, with_growth), plan.runs, executor, on_outcome),
         differences=changed.differences,
         findings=unsuppressed(changed.opened.findings),
         source=" ".join(map(str, changed.opened.paths)),

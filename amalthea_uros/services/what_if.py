@@ -12,8 +12,9 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.changed_model import write_changed
-from amalthea_uros.services.subject import Subject, open_changed
+from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
 
 

@@ -35,6 +35,11 @@ class LossRate:
     window: units.Time = 0
     per_billion: int = 0
 
+    def __str__(self) -> str:
+        if self.window:
+            return f"{self.count} per {units.time_text(self.window)}"
+        return f"{units.number_text(Fraction(self.per_billion * 100, _BILLION))} %"
+
 
 def _loss_rate(value: Any) -> LossRate:
     text = value if isinstance(value, str) else ""

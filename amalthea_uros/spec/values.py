@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import isfinite
 from typing import Annotated, Any, TypeAlias
 
@@ -140,6 +140,21 @@ _TIME = BeforeValidator(_quantity(units.parse_time, units.TIME))
 _FREQUENCY = BeforeValidator(_quantity(units.parse_frequency, units.FREQUENCY))
 _DATA_SIZE = BeforeValidator(_quantity(units.parse_data_size, units.DATA_SIZE))
 _BIT_RATE = BeforeValidator(_quantity(units.parse_bit_rate, units.BIT_RATE))
+
+#: How the values of quantities are written, by what reads them.
+_TEXTS: tuple[tuple[BeforeValidator, Callable[[Any], str]], ...] = (
+    (_TIME, units.time_text),
+    (_FREQUENCY, units.frequency_text),
+    (_DATA_SIZE, units.data_size_text),
+    (_BIT_RATE, lambda rate: f"{units.data_size_text(rate)}/s"),
+)
+
+
+def quantity_text(marks: Iterable[Any]) -> Callable[[Any], str] | None:
+    """How a value is written that has some marks of a type; None if it is no quantity with a unit."""
+    every = list(marks)
+    return next((text for validator, text in _TEXTS if any(validator is mark for mark in every)), None)
+
 
 #: A time above zero, in picoseconds.
 Duration: TypeAlias = Annotated[int, _TIME, AfterValidator(_positive), _text_schema(units.TIME)]

@@ -27,12 +27,14 @@ class Described:
     ----------
     platform : the name of the hardware in execution times; None if it has none
     core_types : by core
+    whole : the description, completed by its platform and its operating system
     """
 
     description: Description
     assembly: Assembly
     platform: str | None
     core_types: Mapping[str, str]
+    whole: Description
 
 
 def describe_file(file: Path, platform: str | None = None) -> Described:
@@ -90,7 +92,7 @@ def _assembled(description: Description, folder: Path, platform: str | None) -> 
     if findings:
         raise ReadError(findings)
     types = {core: each.type or "" for core, each in assembly.system.cores.items()}
-    return Described(description, assembly, name, types)
+    return Described(description, assembly, name, types, whole)
 
 
 def database_frames(description: Description, folder: Path) -> tuple[ForeignFrame, ...]:

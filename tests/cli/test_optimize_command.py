@@ -19,7 +19,7 @@ def test_the_smallest_change_that_meets_a_limit():
     assert "Message_Factor.period: 20 ms -> 1 ms" in run.stdout
     # Thesis, table 6.5: 20.029 ms; with the callback every 1 ms, 1.016 ms (design.json).
     assert re.search(r"20\.03 ms +1\.016 ms +< 11 ms +9\.984 ms +missed -> met", run.stdout)
-    assert f"amuros analyze {SAMPLE} --set Message_Factor.period=1ms" in run.stdout
+    assert f"amuros analyze {SAMPLE} --set Message_Factor.task_period=1ms" in run.stdout
     assert run.stdout.splitlines()[-1].startswith("Optimal: ")
 
 

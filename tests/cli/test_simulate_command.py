@@ -128,7 +128,7 @@ def test_one_run(run, tmp_path):
 def test_a_missed_limit_makes_the_exit_code_1(run):
     assert run(ADVANCED, "--seed", 999)[0] == 0
     assert run(ADVANCED, "--seed", 1001)[0] == 1
-    assert run(ADVANCED, "--seed", 1001, "--set", "Control_Function.period=2ms")[0] == 0
+    assert run(ADVANCED.with_suffix(".amxmi"), "--seed", 1001, "--set", "Control_Function.period=2ms")[0] == 0
 
 
 def test_changes_and_failures_are_shown_beside_the_result(run, tmp_path):
@@ -165,7 +165,7 @@ def test_a_process_that_is_left_out_makes_the_exit_code_1_and_the_closing_line_s
 
 def test_a_table_of_all_variants_and_seeds(run, tmp_path):
     code, output, errors = run(
-        ADVANCED,
+        ADVANCED.with_suffix(".amxmi"),
         *("--seed", 500, "--runs", 2, "--jobs", 1, "--sweep", "Control_Function.period=250us..750us/0.25ms"),
         *("--sweep", "Core_0.frequency=1MHz,2MHz", "--table", tmp_path / "t.json"),
     )
@@ -269,7 +269,7 @@ def test_ctrl_c_before_the_run_is_no_finding(run, monkeypatch):
     def interrupted(*_arguments, **_options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("amalthea_uros.services.subject.open_system", interrupted)
+    monkeypatch.setattr("amalthea_uros.services.changed.open_system", interrupted)
     assert run(ADVANCED) == (130, "", "interrupted\n")
 
 

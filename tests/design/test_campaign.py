@@ -24,6 +24,8 @@ from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import SimulationJob
 from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes.change import Change, parse_sweep
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options
@@ -202,7 +204,8 @@ def test_a_cluster_without_the_package(monkeypatch):
 @pytest.mark.parametrize("path", [ROOT / "samples" / "drive-and-lift.amxmi", ROOT / "samples" / "drive-and-lift.yaml"])
 def test_the_job_of_a_simulation_can_be_sent_without_the_model_that_it_comes_from(path):
     options = Options(duration=10**12, settings=Settings(scale=Fraction(1, 3)))
-    job = SimulationJob(open_system([path]).system, options, (Change("A", "x", "1ms"),))
+    origin = SystemOrigin(Configuration(open_system([path]).system, options.settings))
+    job = SimulationJob(origin, options, (Change("A", "x", "1ms"),))
     data = pickle.dumps(job)
     assert pickle.loads(data) == job
     assert b"metamodel" not in data

@@ -5,6 +5,7 @@ import pytest
 from amalthea_uros import InvalidArgumentError, Settings, analyze, build, diff, optimize
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.optimize.problem import Conclusion
+from amalthea_uros.services.build import build_file
 from amalthea_uros.services.changed_model import write_proposal
 from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.units import MICROSECOND as US
@@ -148,7 +149,7 @@ def test_let_communication_is_written_into_a_model_and_not_into_a_description(tm
 
 
 def test_a_slower_clock_is_chosen_among_those_on_offer(tmp_path):
-    source, target = write(tmp_path, HARDWARE + TASKS), tmp_path / "better.amxmi"
+    source, target = build_file(write(tmp_path, HARDWARE + TASKS)).document.path, tmp_path / "better.amxmi"
     found = optimize(
         source,
         vary=[],
@@ -163,3 +164,8 @@ def test_a_slower_clock_is_chosen_among_those_on_offer(tmp_path):
     assert float(slow.analysis.processors["Core_0"].worst) == pytest.approx(4 * 0.0015)
     write_proposal(found, 1 + found.proposals.index(slow), target)
     assert analyze(target).processors["Core_0"].worst == slow.analysis.processors["Core_0"].worst
+
+
+def test_a_description_does_not_say_how_long_its_code_takes_at_another_clock(tmp_path):
+    with pytest.raises(InvalidArgumentError, match="those at the present clock"):
+        optimize(write(tmp_path, HARDWARE + TASKS), vary=[], offers=["Core_0.frequency=50MHz"])

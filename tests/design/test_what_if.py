@@ -13,6 +13,7 @@ from amalthea_uros.design.changes.change import Change, parse_change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.uros.described import describe_file
 
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
 MODEL = ROOT / "samples" / "executor.amxmi"
@@ -91,8 +92,18 @@ def test_an_overload_is_worse_and_nothing_unknown_is_left_out():
 
 
 def test_what_else_changes_is_listed_as_a_consequence():
+    # Of the periods 1, 10, 20 and 100 ms, 10 ms is the longest one that keeps up with messages every 10 ms.
+    found = amuros.what_if(ADVANCED, ["Message_Factor.rate=100Hz"])
+    assert [str(each) for each in found.differences] == [
+        "Message_Factor.rate: 50 Hz -> 100 Hz",
+        "Message_Factor.period: 20 ms -> 10 ms (consequence)",
+    ]
+
+
+def test_what_else_changes_in_a_model_is_listed_as_a_consequence():
     # The executor takes the message in every 20th of its jobs.
-    found = amuros.what_if(ADVANCED, ["Executor_Task.period=2ms"], amuros.Settings(phases={"Message_Factor": 0}))
+    system = describe_file(ADVANCED).assembly.system
+    found = amuros.what_if(system, ["Executor_Task.period=2ms"], amuros.Settings(phases={"Message_Factor": 0}))
     assert [str(each) for each in found.differences] == [
         "Executor_Task.period: 1 ms -> 2 ms",
         "Message_Factor.arrival_period: 20 ms -> 40 ms (consequence)",

@@ -32,8 +32,8 @@ def test_models(subject):
 
 
 def test_changes_are_made_first():
-    changed = amuros.analyze(YAML, changes=["Control_Function.period=500us"])
-    assert changed["Control_Function"].min_interarrival == amuros.parse_time("500 us")
+    changed = amuros.analyze(YAML, changes=["Control_Function.period=10ms"])
+    assert changed["Control_Function"].min_interarrival == amuros.parse_time("10 ms")
 
 
 def test_findings_about_the_subject_are_findings_of_the_analysis():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from io import BytesIO
@@ -13,9 +13,9 @@ from typing import Any, TypeAlias
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep, count_variants, variants
+from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.perf.system import System
 from amalthea_uros.units import parse_frequency, parse_time
 
 Value: TypeAlias = int | float | str | None
@@ -130,11 +130,6 @@ def _column(change: Change) -> tuple[str, Value]:
     return change.target, change.value
 
 
-def system_bytes(system: System) -> bytes:
-    """A system without the way back to the objects and files that it was extracted from; those stay here."""
-    return compact_bytes(replace(system))  # a replaced system has no tables of names yet
-
-
 def compact_bytes(value: object) -> bytes:
     """Something with systems, without their way back to objects and files."""
     stream = BytesIO()
@@ -142,10 +137,10 @@ def compact_bytes(value: object) -> bytes:
     return stream.getvalue()
 
 
-def system_from(data: bytes) -> System:
-    """The system of some bytes."""
-    system: System = pickle.loads(data)
-    return system
+def origin_from(data: bytes) -> ChangeOrigin:
+    """What changes act on, from some bytes."""
+    origin: ChangeOrigin = pickle.loads(data)
+    return origin
 
 
 class _Pickler(pickle.Pickler):

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantResults, system_bytes, system_from
-from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantResults, compact_bytes, origin_from
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
 
 #: The end of the columns with verdicts in a row of a table.
@@ -73,9 +72,9 @@ def judged_in(record: Record, verdict: ObservedVerdict) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class SimulationJob:
-    """Simulates a system with the changes and the seed of a run."""
+    """Simulates a system with the changes and the seed of a run; the options have the settings of the origin."""
 
-    system: System
+    origin: ChangeOrigin
     options: Options
     changes: tuple[Change, ...] = ()
 
@@ -83,12 +82,12 @@ class SimulationJob:
         """The observations of a run as a row of a table."""
         from amalthea_uros.simulate.runs.run import simulate_system
 
-        changed = apply(self.system, self.options.settings, (*self.changes, *run.changes))
+        changed = self.origin.configure((*self.changes, *run.changes))
         return simulate_system(changed.system, replace(self.options, settings=changed.settings, seed=run.seed)).record()
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _received_job, (system_bytes(self.system), self.options, self.changes)
+        return _received_job, (compact_bytes(self.origin), self.options, self.changes)
 
 
-def _received_job(system: bytes, options: Options, changes: tuple[Change, ...]) -> SimulationJob:
-    return SimulationJob(system_from(system), options, changes)
+def _received_job(origin: bytes, options: Options, changes: tuple[Change, ...]) -> SimulationJob:
+    return SimulationJob(origin_from(origin), options, changes)

@@ -11,8 +11,7 @@ from amalthea_uros.analyze.impact import ComparedFigure, FigureUnit, figures
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, Value, VariantResults, system_bytes, system_from
-from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, Value, VariantResults, compact_bytes, origin_from
 from amalthea_uros.design.changes.change import (
     SWEEP_FORM,
     Change,
@@ -23,11 +22,10 @@ from amalthea_uros.design.changes.change import (
     split_target,
     variants,
 )
+from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.names import require
-from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.settings import Settings
 
 #: Sweeps as callers give them: `{"Task.period": ["1 ms", "2 ms"]}` or `["Task.period=1ms..5ms/1ms"]`.
 Sweeps: TypeAlias = Mapping[str, Sequence[object]] | Iterable[str | Sweep]
@@ -85,7 +83,7 @@ def _listed(target: str, values: Sequence[object]) -> Sweep:
         return parse_sweep(f"{target}={values}")
     if not values:
         raise InvalidArgumentError(f"{target!r} has no values to try")
-    return Sweep(*split_target(target, target, SWEEP_FORM, "Executor_Task.period"), tuple(map(str, values)))
+    return Sweep(*split_target(target, target, SWEEP_FORM, "Executor_Task.period", needs_object=False), tuple(map(str, values)))
 
 
 SCHEDULABLE, GROWTH = "schedulable", "maximum_growth"
@@ -154,14 +152,13 @@ class SweepResult(VariantResults):
 class AnalysisJob:
     """Analyses a system with the changes of a run."""
 
-    system: System
-    settings: Settings
+    origin: ChangeOrigin
     changes: tuple[Change, ...] = ()
     with_growth: bool = False
 
     def __call__(self, run: CampaignRun) -> Record:
         """The results as a row of a table."""
-        analysis = analyze_system(*apply(self.system, self.settings, (*self.changes, *run.changes)))
+        analysis = analyze_system(*self.origin.configure((*self.changes, *run.changes)))
         found = _record(analysis)
         if self.with_growth:
             growth = max_growth(analysis)
@@ -169,11 +166,11 @@ class AnalysisJob:
         return found
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _received_job, (system_bytes(self.system), self.settings, self.changes, self.with_growth)
+        return _received_job, (compact_bytes(self.origin), self.changes, self.with_growth)
 
 
-def _received_job(system: bytes, settings: Settings, changes: tuple[Change, ...], with_growth: bool) -> AnalysisJob:
-    return AnalysisJob(system_from(system), settings, changes, with_growth)
+def _received_job(origin: bytes, changes: tuple[Change, ...], with_growth: bool) -> AnalysisJob:
+    return AnalysisJob(origin_from(origin), changes, with_growth)
 
 
 def _record(analysis: Analysis) -> dict[str, Value]:

@@ -8,7 +8,7 @@ from functools import reduce
 from typing import Any
 
 from amalthea_uros._internal.similar import similar
-from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.change import EXAMPLE, FORM, Change
 from amalthea_uros.design.changes.key import UNSET, Configuration, Key
 from amalthea_uros.design.changes.kinds import FIRST_KEYS, KINDS
 from amalthea_uros.errors import InvalidArgumentError
@@ -35,7 +35,7 @@ class Difference:
     @property
     def target(self) -> str:
         """The object and the key, such as "Executor_Task.period"."""
-        return f"{self.object}.{self.key}"
+        return f"{self.object}.{self.key}".removeprefix(".")
 
     def __str__(self) -> str:
         return f"{self.target}: {self.before} -> {self.after}" + (" (consequence)" if self.is_consequence else "")
@@ -87,6 +87,8 @@ def _shown(configuration: Configuration, name: str, key: str) -> str:
 
 def _keys(system: System, name: str, key: str) -> Iterator[Key[Any]]:
     """The key of each kind of object that has the name, the kinds in their order."""
+    if not name:
+        raise InvalidArgumentError(f"{key!r} does not name an object and a key; expected {FORM}, e.g. {EXAMPLE}")
     kinds = [kind for kind in KINDS if name in kind.objects(system)]
     if not kinds:
         require("object", [name], dict.fromkeys(each for kind in KINDS for each in kind.objects(system)))

@@ -27,7 +27,7 @@ class Change:
 
     Attributes
     ----------
-    object : name of a process, runnable, core, clock, scheduler, stimulus, mode label, message, label or channel
+    object : name of an object, or of a section of a description; "" if the key alone says what is changed
     key : what is changed, such as `period`
     value : with its unit, as the user wrote it
     """
@@ -39,7 +39,7 @@ class Change:
     @property
     def target(self) -> str:
         """The object and the key, such as "Executor_Task.period"."""
-        return f"{self.object}.{self.key}"
+        return f"{self.object}.{self.key}".removeprefix(".")
 
     def __str__(self) -> str:
         return f"{self.target}={self.value}"
@@ -62,7 +62,10 @@ def as_changes(changes: Changes) -> tuple[Change, ...]:
     InvalidArgumentError : a text is not of the form of a change.
     """
     if isinstance(changes, Mapping):
-        return tuple(Change(*split_target(target, target, FORM, EXAMPLE), str(value)) for target, value in changes.items())
+        return tuple(
+            Change(*split_target(target, target, FORM, EXAMPLE, needs_object=False), str(value))
+            for target, value in changes.items()
+        )
     if not isinstance(changes, Iterable):
         raise TypeError(f'expected changes such as {{"Task.period": "2 ms"}}, not {changes!r}')
     texts: Sequence[str | Change] = [changes] if isinstance(changes, str) else list(changes)
@@ -79,7 +82,7 @@ def parse_change(text: str) -> Change:
     InvalidArgumentError : the text is not of this form.
     """
     target, value = split_assignment(text, FORM, EXAMPLE)
-    name, key = split_target(target, text, FORM, EXAMPLE)
+    name, key = split_target(target, text, FORM, EXAMPLE, needs_object=False)
     return Change(name, key, value)
 
 
@@ -92,10 +95,10 @@ def split_assignment(text: str, form: str, example: str) -> tuple[str, str]:
     return target, value
 
 
-def split_target(target: str, text: str, form: str, example: str) -> tuple[str, str]:
-    """The name of the object and the key; raises as `parse_change`."""
-    name, _, key = target.rpartition(".")
-    if not name or not key:
+def split_target(target: str, text: str, form: str, example: str, *, needs_object: bool = True) -> tuple[str, str]:
+    """The name of the object and the key, which values of a description can have alone; raises as `parse_change`."""
+    name, dot, key = target.rpartition(".")
+    if not key or ((dot or needs_object) and not name):
         raise InvalidArgumentError(f"{text!r} does not name an object and a key; expected {form}, e.g. {example}")
     return name, key
 
@@ -144,7 +147,7 @@ def parse_sweep(text: str) -> Sweep:
     InvalidArgumentError : the text has neither form, or the range is empty or too large.
     """
     target, values = split_assignment(text, SWEEP_FORM, SWEEP_EXAMPLE)
-    name, key = split_target(target, text, SWEEP_FORM, SWEEP_EXAMPLE)
+    name, key = split_target(target, text, SWEEP_FORM, SWEEP_EXAMPLE, needs_object=False)
     if match := _RANGE.fullmatch(values):
         return Sweep(name, key, _steps(text, **match.groupdict()))
     if ".." in values and "," not in values:

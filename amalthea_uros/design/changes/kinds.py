@@ -31,6 +31,7 @@ from amalthea_uros.names import require
 from amalthea_uros.perf.activities import Activity, Communication, LabelAccess
 from amalthea_uros.perf.mapping import Placement
 from amalthea_uros.perf.software import Preemption
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import sources
 from amalthea_uros.units import Frequency, frequency_text, time_text
 
@@ -92,8 +93,24 @@ def _show_core_frequency(configuration: Configuration, core: str) -> str:
 
 def _set_core_frequency(configuration: Configuration, core: str, frequency: Frequency) -> Configuration:
     """Change the frequency of one core; other cores with the same clock keep theirs."""
+    _refuse_wire(core, configuration.system)
     settings = configuration.settings
     return configuration._replace(settings=replace(settings, frequencies={**settings.frequencies, core: frequency}))
+
+
+def _set_clock_frequency(configuration: Configuration, clock: str, frequency: Frequency) -> Configuration:
+    for core in configuration.system.cores.values():
+        if core.clock == clock:
+            _refuse_wire(core.name, configuration.system)
+    return configuration._replace(system=CLOCKS.with_fields(configuration.system, clock, frequency=frequency))
+
+
+def _refuse_wire(core: str, system: System) -> None:
+    """Refuse to scale the times on a wire: those of its driver are not all inversely proportional to the bit rate."""
+    if any(core in wire.cores for wire in system.network.wires):
+        raise InvalidArgumentError(
+            f"{core!r} is a wire, whose times also contain waits of the driver; change the bit rate in the app.yaml"
+        )
 
 
 def _set_mode(configuration: Configuration, mode_label: str, value: str) -> Configuration:
@@ -131,6 +148,7 @@ _ISR_KEYS: Mapping[str, Key[Any]] = {
     "priority": field_key(ISR_ALLOCATIONS, "priority", whole_number),
     **scheduling.ISR_KEYS,
 }
+_CLOCK = field_key(CLOCKS, "frequency", positive_frequency, frequency_text)
 _MODE_KEY = Key(str, field_key(MODE_LABELS, "initial", str).show, _set_mode)
 
 #: Where objects of different kinds have the same name, the first kind counts for which the change is possible.
@@ -142,7 +160,7 @@ KINDS = (
         "core", lambda system: system.cores, {"frequency": Key(positive_frequency, _show_core_frequency, _set_core_frequency)}
     ),
     ChangeableKind(
-        "clock", lambda system: system.clocks, {"frequency": field_key(CLOCKS, "frequency", positive_frequency, frequency_text)}
+        "clock", lambda system: system.clocks, {"frequency": Key(positive_frequency, _CLOCK.show, _set_clock_frequency)}
     ),
     ChangeableKind("scheduler", lambda system: system.schedulers, scheduling.SCHEDULER_KEYS),
     ChangeableKind("stimulus", lambda system: system.stimuli_by_name, activation.STIMULUS_KEYS),

@@ -90,6 +90,11 @@ def arrival_periods(system: System) -> Mapping[str, Time]:
 _STRUCTURAL = ("order", "semantics", "callbacks", "runs_in", "runs_when")
 
 
+def is_structural(change: Change) -> bool:
+    """Whether a change is about what a description states otherwise than a system does."""
+    return change.key in _STRUCTURAL
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValueEdit:
     """A value that was written.
@@ -118,12 +123,14 @@ class EditedDescription:
     path : the file that the text is from
     before, text : without and with the edits
     edits : in the order of the changes
+    assignments : what was written for them
     """
 
     path: Path
     before: str
     text: str
     edits: tuple[ValueEdit, ...]
+    assignments: tuple[Assignment, ...] = ()
 
 
 def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = ()) -> EditedDescription:
@@ -142,9 +149,9 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
     ReadError : something in the text is wrong.
     InvalidArgumentError : a change cannot be stated in a description, or would have other effects than stated.
     """
-    structural = [change for change in changes if change.key in _STRUCTURAL]
+    structural = [change for change in changes if is_structural(change)]
     if structural:
-        return _restructured(text, path, structural, [change for change in changes if change.key not in _STRUCTURAL])
+        return _restructured(text, path, structural, [change for change in changes if not is_structural(change)])
     before = describe_text(text, path)
     expected = changed_system(before.assembly.system, changes, Settings())
     places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
@@ -162,7 +169,8 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
             raise InvalidArgumentError(_other_effect(changes, different, before.assembly.system, expected))
         consequences += [assignment for change in more for assignment in places.assignments(change)]
     edits = [*value_edits(text, edited, assignments), *value_edits(text, edited, consequences, is_consequence=True)]
-    return EditedDescription(path=path, before=text, text=edited, edits=tuple(edits))
+    every = (*assignments, *consequences)
+    return EditedDescription(path=path, before=text, text=edited, edits=tuple(edits), assignments=every)
 
 
 def _restructured(text: str, path: Path, structural: Sequence[Change], values: Sequence[Change]) -> EditedDescription:
@@ -174,7 +182,8 @@ def _restructured(text: str, path: Path, structural: Sequence[Change], values: S
     _system(rebuilt, path, structural)
     edited = edit_description(rebuilt, path, values)
     edits = (*value_edits(text, edited.text, assignments), *edited.edits)
-    return EditedDescription(path=path, before=text, text=edited.text, edits=edits)
+    every = (*assignments, *edited.assignments)
+    return EditedDescription(path=path, before=text, text=edited.text, edits=edits, assignments=every)
 
 
 def apply_assignments(text: str, assignments: Iterable[Assignment]) -> str:

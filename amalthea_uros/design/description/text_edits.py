@@ -34,6 +34,8 @@ def rendered(value: Value, quote: str = "") -> str:
     ----------
     quote : that the text had before; it is kept
     """
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, int):
         return str(value)
     if isinstance(value, str):
@@ -141,6 +143,24 @@ def value_text(text: str, path: Path) -> str | None:
     place, is_there = _found(read_document(text), path)
     node = place.value if isinstance(place, Entry) else place
     return text[node.start : node.end].strip() if is_there else None
+
+
+def has_list(text: str, path: Path, length: int) -> bool:
+    """Whether the text has a list of some length at a path."""
+    node = _node_at(text, path)
+    return isinstance(node, TextSequence) and len(node.items) == length
+
+
+def has_mapping(text: str, path: Path) -> bool:
+    """Whether the text has a mapping at a path."""
+    return isinstance(_node_at(text, path), TextMapping)
+
+
+def _node_at(text: str, path: Path) -> AnyNode | None:
+    """The node at a path, None if it is not there."""
+    document = read_document(text)
+    place, is_there = _found(document, path)
+    return document.resolved(place.value if isinstance(place, Entry) else place) if is_there else None
 
 
 def _found(document: YamlDocument, path: Path) -> tuple[Entry | AnyNode, bool]:

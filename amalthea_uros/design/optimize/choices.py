@@ -6,12 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
-from pathlib import Path
 from typing import NamedTuple
 
 from amalthea_uros.design.changes.apply import apply, check_key, describe
 from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
+from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.optimize.designs import Designs, RebuiltStructure
 from amalthea_uros.design.optimize.rules import CapacityRule, rules
 from amalthea_uros.design.optimize.space import Choice, DecisionKind, PriorityOrder, Space
@@ -77,21 +77,22 @@ class Wishes:
 
 
 def design_space(
-    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: tuple[str, Path] | None
+    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: DescriptionOrigin | None
 ) -> tuple[Space, Designs]:
     """The space of designs, and what makes their systems.
 
     Parameters
     ----------
     assembly : of the description of the system; None if it has none
-    source : the text of the description, and its file
+    source : the text of the description
 
     Raises
     ------
     InvalidArgumentError : an offer or something to keep does not exist, an offered value is wrong, or something cannot be varied.
     """
-    builder = _Builder(assembly, present, wishes)
-    described = DescribedCallbacks.of(source) if _needs_description(assembly, wishes) else None
+    stated_offers = () if source is None else tuple(each for each in wishes.offers if _is_stated(each, source, assembly))
+    builder = _Builder(assembly, present, wishes, stated_offers)
+    described = DescribedCallbacks.of(source) if stated_offers or _needs_description(assembly, wishes) else None
     _check_keep(wishes.keep, present.system, described)
     stated = () if described is None else tuple(builder.stated_choices(described))
     orders = tuple(builder.orders())
@@ -100,7 +101,7 @@ def design_space(
     space = Space(choices=(*builder.choices(), *stated), orders=orders if varies_priorities else ())
 
     def completed(changes: tuple[Change, ...], rebuilt: Assembly) -> RebuiltStructure:
-        other = _Builder(rebuilt, present._replace(system=rebuilt.system), wishes)
+        other = _Builder(rebuilt, present._replace(system=rebuilt.system), wishes, stated_offers)
         return RebuiltStructure(
             changes=changes,
             system=rebuilt.system,
@@ -122,6 +123,26 @@ def _needs_description(assembly: Assembly | None, wishes: Wishes) -> bool:
     """Whether something can change that only a description states: also the semantics of its executor, if it is one."""
     is_stated = {Vary.CALLBACKS, Vary.ORDER} & set(wishes.vary)
     return bool(is_stated) or (Vary.COMMUNICATION in wishes.vary and assembly is not None)
+
+
+def _is_stated(offer: Sweep, source: DescriptionOrigin, assembly: Assembly | None) -> bool:
+    """Whether a value on offer is one of the description that the system has not, or has in another form.
+
+    Raises
+    ------
+    InvalidArgumentError : nothing has the name, or no description states the value.
+    """
+    for change in offer.changes():
+        source.divided([change])
+    if not source.meant(f"{offer.object}.{offer.key}".removeprefix(".")):
+        return False
+    if offer.key == "priority":
+        return assembly is not None and assembly.priority_scale.zero is not None
+    try:
+        check_key(source.present.system, offer.object, offer.key)
+    except InvalidArgumentError:
+        return True
+    return False
 
 
 def _check_keep(keep: Iterable[str], system: System, source: DescribedCallbacks | None) -> None:
@@ -148,6 +169,7 @@ class _Builder:
     assembly: Assembly | None
     present: Configuration
     wishes: Wishes
+    stated_offers: tuple[Sweep, ...] = ()
 
     @property
     def system(self) -> System:
@@ -159,7 +181,8 @@ class _Builder:
     def choices(self) -> Iterator[Choice]:
         """Single values; offers of the user replace what would be on offer by itself."""
         for offer in self.wishes.offers:
-            yield self._offered(offer)
+            if offer not in self.stated_offers:
+                yield self._offered(offer)
         for choice in self._own_choices():
             if self._is_free(choice.object, choice.key) and len(choice.options) > 1:
                 yield choice
@@ -286,6 +309,7 @@ class _Builder:
 
     def stated_choices(self, source: DescribedCallbacks) -> Iterator[Choice]:
         """Where callbacks run, in which order, and when they take their messages."""
+        yield from source.values(self.stated_offers)
         for kind, choices in (
             (Vary.CALLBACKS, source.placements),
             (Vary.ORDER, source.orders),

@@ -62,7 +62,7 @@ class Choice:
     @property
     def target(self) -> str:
         """The object and the key, such as "Executor_Task.period"."""
-        return f"{self.object}.{self.key}"
+        return f"{self.object}.{self.key}".removeprefix(".")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import permutations
 from math import prod
-from pathlib import Path
 
-from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.description.edit import edit_description
+from amalthea_uros.design.changes.change import Change, Sweep, compact
+from amalthea_uros.design.description.edit import edit_description, is_structural
+from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.optimize.designs import RebuiltStructure
 from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
 from amalthea_uros.errors import InvalidArgumentError
@@ -31,18 +31,24 @@ Completed = Callable[[tuple[Change, ...], Assembly], RebuiltStructure]
 class DescribedCallbacks:
     """The callbacks of a description, and how they are executed."""
 
-    text: str
-    path: Path
+    origin: DescriptionOrigin
     whole: Described
 
     @classmethod
-    def of(cls, source: tuple[str, Path] | None) -> DescribedCallbacks:
+    def of(cls, origin: DescriptionOrigin | None) -> DescribedCallbacks:
         """Those of the text of a description; InvalidArgumentError without one."""
-        if source is None:
+        if origin is None:
             raise InvalidArgumentError(
                 "only an app.yaml says where callbacks run and in which order; give one, or leave out 'callbacks'"
             )
-        return cls(*source, describe_text(*source))
+        return cls(origin, describe_text(origin.text, origin.path))
+
+    def values(self, offers: Iterable[Sweep]) -> Iterator[Choice]:
+        """Values of the description on offer, the present one first."""
+        for offer in offers:
+            present = self.origin.differences([Change(offer.object, offer.key, offer.values[0])])[0].before
+            options = dict.fromkeys(map(compact, (present, *offer.values)))
+            yield Choice(object=offer.object, key=offer.key, kind=DecisionKind.OTHER, options=tuple(options))
 
     @property
     def executor(self) -> ExecutorSection:
@@ -108,11 +114,13 @@ class DescribedCallbacks:
             if moved.get(callback.name) and getattr(callback.section, "deadline", None) is not None:
                 return f"the deadline of {callback.name!r} has no effect in the executor"
         changes = self._with_order(own, {**inside, **moved})
+        values = [change for change in changes if not is_structural(change)]
+        structural = [change for change in changes if is_structural(change)]
         try:
-            text = edit_description(self.text, self.path, changes).text
+            text = edit_description(self.origin.edited(values), self.origin.path, structural).text
         except InvalidArgumentError as error:
             return str(error)
-        rebuilt = describe_text(text, self.path).assembly
+        rebuilt = describe_text(text, self.origin.path).assembly
         if _demands(rebuilt.system) != _demands(self.whole.assembly.system):
             return "a requirement of the model has no object there"
         return complete(changes, rebuilt)

@@ -376,7 +376,9 @@ def changes(found: Improvements) -> Table:
 
 def tried(found: Improvements) -> str:
     """How many changes were analysed."""
-    text = f"{counted(found.tried, 'change')} analysed, one at a time"
+    is_combined = any(each.change.is_combined for each in found.found)
+    how = "one at a time, and the best of them together" if is_combined else "one at a time"
+    text = f"{counted(found.tried, 'change')} analysed, {how}"
     return f"{text}; {found.untried:,} more were not tried" if found.untried else text
 
 

@@ -13,6 +13,7 @@ from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.report.basics.document import Document, Lead, Line, Section, Sentences, Tone, document, lines, section, table
 
 if TYPE_CHECKING:
+    from amalthea_uros.design.changes.apply import Difference
     from amalthea_uros.design.changes.timing_changes import TimingChange
     from amalthea_uros.metamodel.element import Element
     from amalthea_uros.metamodel.summary import ModelSummary
@@ -102,14 +103,31 @@ def diff_document(result: DiffResult) -> Document:
     for change in result.changes:
         groups.setdefault((change.old_element, change.new_element), []).append(change)
     impact = [] if result.impact is None else [impact_section(result.impact)]
-    summary = lines(_summary(result.changes))
+    if result.described:
+        summary = lines(f"{counted(len(result.described), 'difference')} of the descriptions")
+        differences = [section("", *map(_described, result.described))]
+    else:
+        summary = lines(_summary(result.changes))
+        differences = [
+            section("Timing", Sentences(list(map(_timing_text, result.timing)))),
+            section("Objects" if result.timing else "", *(block for group in groups.values() for block in _object(group))),
+        ]
     sections = (
-        section("Timing", Sentences(list(map(_timing_text, result.timing)))),
-        section("Objects" if result.timing else "", *(block for group in groups.values() for block in _object(group))),
+        *differences,
         section("", summary),
         *impact,
     )
     return document(sections, kept=[summary, *(block for each in impact for block in each.blocks)])
+
+
+def _described(difference: Difference) -> Sentences:
+    """A value of a description before and after, or an object that only one of them has."""
+    from amalthea_uros.design.description.comparison import PRESENT
+
+    if PRESENT in (difference.before, difference.after):
+        mark, tone = _ADDED if difference.after == PRESENT else _REMOVED
+        return Sentences([Lead(f"{mark} {difference.target}", "", tone)])
+    return Sentences([str(difference)])
 
 
 def _object(group: Sequence[ModelChange]) -> Iterator[Sentences]:

@@ -107,14 +107,12 @@ def _proposal(result: Optimization, number: int, proposal: DesignProposal) -> Se
     ]
     titles = ("what", "quantity", ">now", ">proposed", ">limit", ">margin", "verdict")
     blocks: list[Block] = [Sentences(list(map(str, proposal.differences))), table("", titles, rows)]
-    blocks.append(Sentences([*_drawbacks(proposal), *_next(result, number, proposal)]))
+    blocks.append(Sentences([*_drawbacks(proposal), *_next(result, proposal)]))
     return section(f"Proposal {number}: {count}, proved by the analysis ({claim})", *blocks)
 
 
-def _next(result: Optimization, number: int, proposal: DesignProposal) -> Iterator[str]:
-    if proposal.rebuilt is not None:
-        yield f"to see all effects, write it: add -o FILE.yaml --proposal {number}, then amuros analyze FILE.yaml"
-    elif proposal.changes:
+def _next(result: Optimization, proposal: DesignProposal) -> Iterator[str]:
+    if proposal.changes:
         files = " ".join(shlex.quote(str(path)) for path in result.paths) or "FILE"
         yield f"to see all effects: amuros analyze {files} {shlex.join(proposal.options)}"
 

@@ -105,7 +105,13 @@ def _analyzed(content: ReportContent) -> AnalysisResult:
     periods = content.assembly.task_periods if content.assembly is not None else ()
     system, settings = content.system, content.settings
     return AnalysisResult(
-        paths=(), task_periods=periods, system=system, settings=settings, analysis=content.analysis, findings=()
+        paths=(),
+        task_periods=periods,
+        changed=content.changed,
+        system=system,
+        settings=settings,
+        analysis=content.analysis,
+        findings=(),
     )
 
 

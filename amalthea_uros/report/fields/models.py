@@ -52,7 +52,7 @@ declare(
     ("assumptions", lambda _result: []),
     ("findings", _findings),
 )
-declare(DiffResult, *("old", "new", "timing", "changes", "findings"), ("impact", given("impact")))
+declare(DiffResult, *("old", "new", "timing", "described", "changes", "findings"), ("impact", given("impact")))
 declare(TimingChange, ("kind", "happening"), ("class", "kind"), "object", ("values", "differences"))
 declare(
     ModelChange,

@@ -1,0 +1,96 @@
+"""Values of a description that could shorten latencies: what people change about micro-ROS in practice, each to be tried."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from amalthea_uros.design.changes.change import Change, compact
+from amalthea_uros.design.description.keys import DescriptionKey, short_name
+from amalthea_uros.spec.written import Written
+from amalthea_uros.units import parse_bit_rate, parse_time
+
+#: The rate up to which USB bridges and most controllers go without special care; that of the examples for fast boards.
+_BAUD_RATE = 921_600
+#: The highest bit rate of classic CAN (ISO 11898-1).
+_BITRATE = "1 Mbit/s"
+#: The shortest sleep and timeout that are tried: the tick that most ports have.
+_SHORTEST = "1 ms"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Suggestion:
+    """A value to try.
+
+    Attributes
+    ----------
+    text : what changes, in words
+    """
+
+    text: str
+    change: Change
+
+
+def suggestions(keys: Sequence[DescriptionKey]) -> Iterator[Suggestion]:
+    """The values to try, in the order of how easy they are to change."""
+    for last, others in _VALUES.items():
+        for key in keys:
+            if key.path[-1] == last and _is_meant(key):
+                yield from (_suggestion(key, value, keys) for value in others(key.value))
+
+
+def _is_meant(key: DescriptionKey) -> bool:
+    """Whether a key is about an executor, a wire or a message, and not about something else of the same name."""
+    sections = {"loop", "serial", "can", "driver", "subscriptions", "publishers"}
+    return not sections.isdisjoint(map(str, key.path)) or key.path[-1] == "semantics"
+
+
+def _suggestion(key: DescriptionKey, value: str, keys: Sequence[DescriptionKey]) -> Suggestion:
+    target = short_name(key, keys)
+    name, _, last = target.rpartition(".")
+    return Suggestion(text=f"{target} {key.value} -> {value}", change=Change(name, last, compact(value)))
+
+
+def _shorter(present: Written | None) -> Iterator[str]:
+    if isinstance(present, str) and parse_time(present) > parse_time(_SHORTEST):
+        yield _SHORTEST
+
+
+def _faster_line(present: Written | None) -> Iterator[str]:
+    if isinstance(present, int) and present < _BAUD_RATE:
+        yield str(_BAUD_RATE)
+
+
+def _faster_bus(present: Written | None) -> Iterator[str]:
+    if isinstance(present, str) and parse_bit_rate(present) < parse_bit_rate(_BITRATE):
+        yield _BITRATE
+
+
+def _without_ticks(present: Written | None) -> Iterator[str]:
+    """The driver that is woken by the end of a transfer, instead of asking in each tick."""
+    if present in ("dma", "interrupt"):
+        yield "blocking"
+
+
+def _unacknowledged(present: Written | None) -> Iterator[str]:
+    if present == "reliable":
+        yield "best-effort"
+
+
+def _at_once(present: Written | None) -> Iterator[str]:
+    if present == "ROS":
+        yield "LET"
+
+
+#: The last name of a key -> the values to try instead of the present one.
+_VALUES: Mapping[str, Callable[[Written | None], Iterator[str]]] = {
+    "sleep": _shorter,
+    "spin_some": _shorter,
+    "spin_period": _shorter,
+    "write": _without_ticks,
+    "read": _without_ticks,
+    "baud_rate": _faster_line,
+    "bitrate": _faster_bus,
+    "reliability": _unacknowledged,
+    "semantics": _at_once,
+}

@@ -1,0 +1,182 @@
+"""The keys of a description: a path of names for each value that its file has, or could have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from amalthea_uros.design.description.text_edits import Path, has_list
+from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
+from amalthea_uros.spec.written import Written, section_class, written
+
+#: What identifies an item of a list, the first key that it has.
+_IDENTIFIERS = ("name", "topic", "service", "action", "process")
+#: Words for keys that people look for under another name.
+_OTHER_WORDS = {"board": "hardware.platform"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Holder:
+    """A section, and where it is in the text."""
+
+    path: Path
+    section: DescriptionSection
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DescriptionKey:
+    """A value of a description.
+
+    Attributes
+    ----------
+    path : of the value in the text
+    names : the same with the names of objects in place of their numbers
+    holders : the sections that it is in, the innermost one last
+    field : the key in the innermost section
+    item : the name of the value in a mapping by names; "" for others
+    """
+
+    path: Path
+    names: tuple[str, ...]
+    holders: tuple[Holder, ...]
+    field: str
+    item: str = ""
+
+    @property
+    def section(self) -> DescriptionSection:
+        """The section with the value."""
+        return self.holders[-1].section
+
+    @property
+    def value(self) -> Written | None:
+        """The present value, also if it is that of the platform or the default; None if there is none."""
+        value = written(self.section, self.field)
+        if self.item and isinstance(value, Mapping):
+            return value.get(self.item)
+        return value
+
+    @property
+    def is_part(self) -> bool:
+        """Whether the value has keys of its own, so that it is listed by these."""
+        return not self.item and section_class(self.section, self.field) is not None
+
+    @property
+    def full_name(self) -> str:
+        """All names."""
+        return ".".join(self.names)
+
+
+def is_listed(key: DescriptionKey) -> bool:
+    """Whether a key is shown in lists: single values, and what may be written as one; of its parts, those that are stated."""
+    kind = None if key.item else section_class(key.section, key.field)
+    if kind is not None and (not issubclass(kind, Shorthand) or key.path == ("hardware",)):
+        return False
+    if isinstance(getattr(key.section, key.field), list) and _has_sections(getattr(key.section, key.field)):
+        return False
+    inner = any(isinstance(holder.section, Shorthand) for holder in key.holders[1:] if holder.path != ("hardware",))
+    return not inner or key.section.states(key.field)
+
+
+def _has_sections(items: list[object]) -> bool:
+    return any(isinstance(item, DescriptionSection) for item in items)
+
+
+def keys_of(whole: Description, text: str) -> tuple[DescriptionKey, ...]:
+    """All keys of a description.
+
+    Parameters
+    ----------
+    whole : completed by its platform
+    text : the text of the description; of the lists of a platform, no single items can be changed
+    """
+    return tuple(_keys((Holder(path=(), section=whole),), (), text))
+
+
+def _keys(holders: tuple[Holder, ...], names: tuple[str, ...], text: str) -> Iterator[DescriptionKey]:
+    path, section = holders[-1].path, holders[-1].section
+    for field, info in type(section).model_fields.items():
+        key = info.alias or field
+        if key == "executor" and getattr(section, "executors", ()):
+            continue
+        yield DescriptionKey(path=(*path, key), names=(*names, key), holders=holders, field=field)
+        yield from _inner(holders, (*names, key), (*path, key), field, text)
+
+
+def _inner(holders: tuple[Holder, ...], names: tuple[str, ...], path: Path, field: str, text: str) -> Iterator[DescriptionKey]:
+    value = getattr(holders[-1].section, field)
+    if isinstance(value, DescriptionSection):
+        name = getattr(value, "name", None)
+        own = (*names, name) if isinstance(name, str) else names
+        yield from _keys((*holders, Holder(path=path, section=value)), own, text)
+    elif isinstance(value, Mapping):
+        for name, item in value.items():
+            if isinstance(item, DescriptionSection):
+                yield from _keys((*holders, Holder(path=(*path, name), section=item)), (*names, name), text)
+            else:
+                yield DescriptionKey(path=(*path, name), names=(*names, name), holders=holders, field=field, item=name)
+    elif isinstance(value, list) and has_list(text, path, len(value)):
+        for index, item in enumerate(value):
+            if isinstance(item, DescriptionSection):
+                holder = Holder(path=(*path, index), section=item)
+                yield from _keys((*holders, holder), (*names, _name_of(item, index)), text)
+
+
+def _name_of(item: DescriptionSection, index: int) -> str:
+    names = (getattr(item, key, None) for key in _IDENTIFIERS)
+    return next((name for name in names if isinstance(name, str)), str(index))
+
+
+def matching(target: str, keys: Sequence[DescriptionKey]) -> list[DescriptionKey]:
+    """The keys that are meant by some of their names, the last one among them, in their order; those with the smallest gaps.
+
+    >>> matching("uros_task.sleep", keys)[0].full_name   # doctest: +SKIP
+    'middleware.executor.uros_task.loop.sleep'
+    """
+    target = _OTHER_WORDS.get(target, target)
+    gaps = [(gap, key) for key in keys if (gap := _gap(target, key.names)) is not None]
+    if not gaps:
+        folded = target.casefold()
+        gaps = [(gap, key) for key in keys if (gap := _gap(folded, [each.casefold() for each in key.names])) is not None]
+    smallest = min((gap for gap, _ in gaps), default=0)
+    return [key for gap, key in gaps if gap == smallest]
+
+
+def _gap(target: str, names: Sequence[str]) -> int | None:
+    """How many names are left out between those of a target; None if the target is no part of the names."""
+    rest = _without(target, names[-1])
+    gap = between = 0
+    for name in reversed(names[:-1]):
+        if not rest:
+            break
+        shorter = _without(rest, name)
+        if shorter is None:
+            between += 1
+        else:
+            rest, gap = shorter, gap + between
+            between = 0
+    return None if rest or rest is None else gap
+
+
+def _without(target: str, name: str) -> str | None:
+    """A target without its last name, None if that is another one."""
+    if target == name:
+        return ""
+    return target.removesuffix(f".{name}") if target.endswith(f".{name}") else None
+
+
+def short_name(key: DescriptionKey, keys: Sequence[DescriptionKey]) -> str:
+    """The shortest name that means only this key, if possible with the object that has it."""
+    for name in _candidates(key):
+        if [each.path for each in matching(name, keys)] == [key.path]:
+            return name
+    return key.full_name
+
+
+def _candidates(key: DescriptionKey) -> Iterator[str]:
+    objects = [index for index, name in enumerate(key.names[:-1]) if name not in key.path[:-1]]
+    for length in range(1, len(key.names)):
+        end = key.names[-length:]
+        yield from (".".join((key.names[index], *end)) for index in reversed(objects) if index < len(key.names) - length)
+        if len(end) > 1 or len(key.names) == 1:
+            yield ".".join(end)

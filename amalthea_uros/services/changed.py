@@ -1,0 +1,120 @@
+"""Subjects with changes of their values: the text of a description is edited, any other system is changed itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from amalthea_uros._internal.files import read_text
+from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.paths import TEXT
+from amalthea_uros.design.changes.apply import Difference
+from amalthea_uros.design.changes.change import Change, Changes, Sweep, as_changes
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.origin import ChangeOrigin, SystemOrigin
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.system import System
+from amalthea_uros.services.subject import Subject, SystemInput, open_system, require_settings
+from amalthea_uros.timing.basics.settings import Settings
+
+if TYPE_CHECKING:
+    from amalthea_uros.design.description.origin import DescriptionOrigin
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangedSystem:
+    """A system that was opened, and what changes of its values make of it.
+
+    Attributes
+    ----------
+    origin : what the changes act on
+    given : the system and the settings without the changes
+    system, settings : with the changes
+    differences : what the changes did
+    """
+
+    opened: SystemInput
+    origin: ChangeOrigin
+    given: Configuration
+    changes: tuple[Change, ...]
+    system: System
+    settings: Settings
+    differences: tuple[Difference, ...]
+
+    @property
+    def source(self) -> DescriptionOrigin | None:
+        """The description with the changes; None for other systems."""
+        if self.opened.assembly is None:
+            return None
+        from amalthea_uros.design.description.origin import DescriptionOrigin
+
+        assert isinstance(self.origin, DescriptionOrigin)
+        return self.origin.after(self.changes)
+
+    def check_sweeps(self, sweeps: Iterable[Sweep]) -> None:
+        """Refuse names and values that cannot be swept, before the first run; the ends of each sweep are tried."""
+        for sweep in sweeps:
+            for value in (sweep.values[0], sweep.values[-1]):
+                changed = self.origin.configure((*self.changes, Change(sweep.object, sweep.key, value)))
+                require_settings(changed.settings, changed.system)
+
+
+def open_changed(
+    subject: Subject, settings: Settings | None = None, changes: Changes = (), *, with_bus: bool = False
+) -> ChangedSystem:
+    """The system of a subject with changes of its values; parameters and errors as for `open_system`.
+
+    Raises
+    ------
+    InvalidArgumentError : the changes or settings name what does not exist, or a value is wrong.
+    """
+    opened, parsed = open_system(subject, with_bus=with_bus), as_changes(changes)
+    given = Configuration(opened.system, settings or Settings())
+    require_settings(given.settings, given.system)
+    origin = origin_of(opened, given, with_bus=with_bus)
+    differences = origin.differences(parsed)
+    system, changed_settings = origin.configure(parsed) if parsed else given
+    require_settings(changed_settings, system)
+    return ChangedSystem(
+        opened=opened,
+        origin=origin,
+        given=given,
+        changes=parsed,
+        system=system,
+        settings=changed_settings,
+        differences=differences,
+    )
+
+
+def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:
+    """What changes of a subject act on: the text of a description, otherwise the system; raises as `description_origin`."""
+    if opened.assembly is None:
+        return SystemOrigin(given)
+    return description_origin(opened, given.settings, with_bus=with_bus)
+
+
+def description_origin(opened: SystemInput, settings: Settings, *, with_bus: bool = False) -> DescriptionOrigin:
+    """The text of a description, as what changes act on.
+
+    Raises
+    ------
+    InvalidArgumentError : the content of a description cannot be written as text.
+    """
+    from amalthea_uros.design.description.origin import DescriptionOrigin
+
+    path = opened.paths[0] if opened.paths else TEXT
+    return DescriptionOrigin(text=_text_of(opened), path=path, settings=settings, with_bus=with_bus)
+
+
+def _text_of(opened: SystemInput) -> str:
+    if opened.paths:
+        return read_text(opened.paths[0], DESCRIPTION_SIZE)
+    if isinstance(opened.subject, Mapping):
+        from yaml import YAMLError, safe_dump
+
+        try:
+            return safe_dump(opened.subject, sort_keys=False, allow_unicode=True)
+        except YAMLError as error:
+            raise InvalidArgumentError(f"the content of the description cannot be written as YAML: {error}") from None
+    return str(opened.subject)
