@@ -14,7 +14,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
-from amalthea_uros.cli.ends import INTERRUPTED, failed, say
+from amalthea_uros.cli.ends import INTERRUPTED, broken, failed, say
 
 #: Signals after which everything is cleaned up; one that the caller ignores, as `nohup` does, remains ignored.
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
@@ -54,6 +54,8 @@ def _code() -> int:
     except MemoryError:
         say("not enough memory; the input is too large for this computer, or for its limits")
         code = 2
+    except Exception as error:
+        code = broken(error)
     try:
         for stream in filter(None, (sys.stdout, sys.stderr)):
             stream.flush()
