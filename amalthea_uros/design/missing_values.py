@@ -30,7 +30,7 @@ _PERIOD, _DEADLINE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "100MHz", "1000tic
 #: One statement can show that another one is needed: an allocated task needs a priority.
 _ROUNDS = 4
 #: Analyses of so many processes in all are tried, so that the proposal takes no longer than the analysis of a large model.
-_EFFORT = 300
+_EFFORT = 100
 
 
 @dataclass(frozen=True, slots=True)
