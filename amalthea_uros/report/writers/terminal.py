@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterable, Sequence
-from itertools import groupby, zip_longest
+from itertools import groupby, islice, zip_longest
 from pathlib import Path
 from textwrap import wrap
 from typing import IO
@@ -96,9 +96,10 @@ def kind_of_message(finding: Finding) -> tuple[str, Severity, str, Path | None]:
 
 def _more(findings: Sequence[Finding]) -> str:
     """How many more findings of a kind there are, and where."""
-    places = [finding.location.line for finding in findings if finding.location and finding.location.line]
-    lines = ", ".join(map(str, dict.fromkeys(places[:_PLACES]))) + (", ..." if len(places) > _PLACES else "")
-    return f"and {len(findings):,} more {findings[0].rule} of this kind" + (f", in lines {lines}" if places else "")
+    places = dict.fromkeys(finding.location.line for finding in findings if finding.location and finding.location.line)
+    lines = ", ".join([*map(str, islice(places, _PLACES)), *(["..."] if len(places) > _PLACES else [])])
+    where = f", in line{'s' if len(places) > 1 else ''} {lines}" if places else ""
+    return f"and {len(findings):,} more {findings[0].rule} of this kind{where}"
 
 
 #: Longer source lines are shown in part; scheduler descriptions have a thousand characters.
