@@ -101,8 +101,8 @@ def _become(words: list[str], folder: Path, limit: int) -> None:
     code = _ESCAPED
     try:
         resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-        sys.stdin = open(os.devnull)  # noqa: SIM115 - open up to the end of the process
-        sys.stdout, sys.stderr = open(folder / "out", "w"), open(folder / "err", "w")  # noqa: SIM115
+        sys.stdin = Path(os.devnull).open()  # noqa: SIM115 - open up to the end of the process
+        sys.stdout, sys.stderr = (folder / "out").open("w"), (folder / "err").open("w")
         sys.argv = ["amuros", *words]
         main()
         code = 0

@@ -11,7 +11,6 @@ from amalthea_uros.report.basics.document import Listing, Section, lines, sectio
 from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.services.analyze import AnalysisResult
 
-
 _HEADING = "To get numbers, state"
 _NO_SCHEDULERS = (
     "which scheduler executes each task, on which core: no scheduler of the model is responsible for a core. Files that belong "
