@@ -1,4 +1,4 @@
-"""What a model leaves open that changes can state, so that more processes have a bounded response time.
+"""Values that a model leaves open and changes can state, so that more processes have a bounded response time.
 
 Which values a system needs is found by trying: what is proposed was applied and analysed. The values are examples, as only who knows
 the system can state them; so nothing of the results is kept but how many processes have one.
@@ -64,7 +64,7 @@ def missing_values(
     if analysis.processes and not any(scheduler_cores(name, system) for name in system.schedulers):
         return MissingValues(given, (), (), lacks_schedulers=True)
     trial = _Trial(system, settings, _bounded(analysis))
-    if len(trial.before) == len(analysis.processes):
+    if len(trial.before) == len(analysis.processes) or len(analysis.processes) > _EFFORT:
         return None
     changes: list[Change] = []
     current = analysis
@@ -138,7 +138,7 @@ class _Trial:
 
 
 def _wanted(analysis: Analysis) -> Iterator[Change]:
-    """What the processes without a bound, and those beside them, do not state."""
+    """The values that the processes without a bound, and those beside them, do not state."""
     bounded = _bounded(analysis)
     context = analysis.solution.context
     yield from _clocks(context.system, context.settings)
@@ -171,8 +171,8 @@ def _priorities(analysis: Analysis) -> Iterator[Change]:
     used = {allocation.priority for allocation in context.system.mapping.tasks}
     unused = (number for number in count(1) if number not in used)
     for allocation in context.system.mapping.tasks:
-        found = context.scheduled.get(allocation.task)
-        is_needed = found is None or found.equal_priority is EqualPriority.UNKNOWN
+        scheduled = context.scheduled.get(allocation.task)
+        is_needed = scheduled is None or scheduled.equal_priority is EqualPriority.UNKNOWN
         if allocation.priority is None and is_needed:
             yield Change(allocation.task, "priority", str(next(unused)))
 

@@ -1,4 +1,4 @@
-"""What a model leaves open, as a command that states it."""
+"""The values that a model leaves open, as a command that states them."""
 
 from __future__ import annotations
 

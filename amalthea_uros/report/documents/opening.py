@@ -66,16 +66,16 @@ def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
         yield ", ".join(distinct[:_MOST_NAMES]) + more, reason
 
 
-def _untold(warnings: Iterable[Finding], rows: Iterable[Judged]) -> Iterator[Finding]:
+def _unreported(warnings: Iterable[Finding], rows: Iterable[Judged]) -> Iterator[Finding]:
     """The warnings without those that give the reason of a row, or of another warning, for the same object once more."""
-    told = {(name, why(row)) for row in rows for name in (row.name, concerned(row))}
+    reported = {(name, why(row)) for row in rows for name in (row.name, concerned(row))}
     for warning in warnings:
         # Such as "the chain 'c' is not evaluated: the event has no event type".
         what, _, reason = warning.message.partition(": ")
-        facts_told = {(name, reason) for name in names_in(replace(warning, message=what))}
-        if not reason or told.isdisjoint(facts_told):
+        repeated = {(name, reason) for name in names_in(replace(warning, message=what))}
+        if not reason or reported.isdisjoint(repeated):
             yield warning
-        told |= facts_told
+        reported |= repeated
 
 
 def opening(content: ReportContent) -> Opening:
@@ -85,6 +85,6 @@ def opening(content: ReportContent) -> Opening:
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
     rows = [item for item in judged_items(content.analysis) if item.verdict is not Verdict.MET]
     others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
-    warnings = [(each.rule, each.message) for each in _untold(content.warnings, rows)]
+    warnings = [(each.rule, each.message) for each in _unreported(content.warnings, rows)]
     reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
     return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

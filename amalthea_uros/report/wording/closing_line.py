@@ -54,8 +54,8 @@ def _failures(summary: SystemSummary) -> str:
 def _core_failure(core: ProcessorResult) -> str:
     load = rounded(core.at_least * 100, Rounding.DOWN, limit=100)
     hint = unit_hint(core.at_least, core.frequency)
-    found = f"the load of {core.name} is {'at least ' if core.worst is None else ''}{number_text(load)}%"
-    return f"{found} ({hint})" if hint else found
+    text = f"the load of {core.name} is {'at least ' if core.worst is None else ''}{number_text(load)}%"
+    return f"{text} ({hint})" if hint else text
 
 
 def _failure(item: Judged) -> str:

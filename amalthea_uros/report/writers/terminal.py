@@ -84,12 +84,12 @@ def _folded_cell(cell: str, width: int) -> str:
 _WHOLE = 3
 #: Of the others so many places.
 _PLACES = 8
-#: What differs between messages of a kind: names in quotes, and numbers.
+#: The parts that differ between messages of a kind: names in quotes, and numbers.
 _VARIABLE = re.compile(r"""'[^']*'|"[^"]*"|\d[\d,.]*""")
 
 
 def kind_of_message(finding: Finding) -> tuple[str, Severity, str, Path | None]:
-    """What findings of a kind in a file have in common."""
+    """The properties that findings of a kind in a file share."""
     path = finding.location.path if finding.location else None
     return finding.rule, finding.severity, _VARIABLE.sub("", finding.message), path
 
