@@ -23,7 +23,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import scheduler_cores
-from amalthea_uros.timing.scheduling.ranks import EqualPriority
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 #: Examples: a value that is accepted, and which nobody takes for that of his system.
 _PERIOD, _DEADLINE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "100MHz", "1000ticks"
