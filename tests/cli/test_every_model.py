@@ -37,8 +37,9 @@ def test_an_exception_that_escapes_is_reported_with_its_place(monkeypatch):
 
 
 def errors(path):
-    """How often each rule finds an error."""
-    return Counter(each.rule for each in check_files(path).presentation.shown if each.severity is Severity.ERROR)
+    """How often each rule finds an error; without those of the XML schema, which there is none of for most old versions."""
+    found = check_files(path).presentation.shown
+    return Counter(each.rule for each in found if each.severity is Severity.ERROR and each.rule != "XSD001")
 
 
 @pytest.mark.parametrize("path", PATHS)
