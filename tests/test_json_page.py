@@ -36,6 +36,7 @@ RUNS = {
         ("analyze", "unknown.amxmi", "--set", "Control_Function.execution_time=500us"),
         ("analyze", "no-times.amxmi", "--set", "Control_Function.execution_time=500us"),
         ("analyze", "way.yaml"),
+        ("analyze", "open.amxmi"),
     ),
     "amuros simulate": (
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
@@ -237,6 +238,8 @@ def folder(tmp_path):
     (tmp_path / "lossy.yaml").write_text(WAY.replace("transport: {", "transport: {losses: 1 per 1 s, "))
     (tmp_path / "loops.yaml").write_text(LOOPS)
     (tmp_path / "arduino.yaml").write_text(ARDUINO)
+    # Nothing activates the tasks.
+    (tmp_path / "open.amxmi").write_text(re.sub(' stimuli="[^"]*"', "", (tmp_path / "executor.amxmi").read_text()))
     rclc = (tmp_path / "rclc-in-executor.yaml").read_text()
     (tmp_path / "stacks.yaml").write_text(rclc.replace("  executor:\n", "  executor:\n    stack: 16 kB\n"))
     (tmp_path / "wrong.meta").write_text('{"names": {"rmw_microxrcedds": {"cmake-args": ["-DRMW_UXRCE_MAX_NODES=0"]}}}')

@@ -6,6 +6,14 @@ import os
 
 #: The exit code that shells give a process that Ctrl-C ended: 128 and the number of the signal.
 INTERRUPTED = 130
+#: The exit code for a flaw of this program: EX_SOFTWARE of sysexits.h, of BSD. It is none of those that say something about the input.
+INTERNAL_ERROR = 70
+#: Where such a flaw is reported.
+ISSUES = "https://github.com/amuros/amuros/issues"
+#: The environment variable that has the traceback shown.
+TRACEBACK = "AMUROS_TRACEBACK"
+#: Characters of an exception in one sentence; some quote what they were given.
+_LONGEST = 300
 
 
 def failed(error: OSError) -> int:
@@ -17,6 +25,20 @@ def failed(error: OSError) -> int:
         what = "the output cannot be written" if error.filename is None else os.fsdecode(error.filename)
         say(visible(f"{what}: {error.strerror or error}"))
     return 2
+
+
+def broken(error: Exception) -> int:
+    """Say that something went wrong that must not, and how to report it; the exit code."""
+    from amalthea_uros.report.basics.escape import visible
+
+    if os.environ.get(TRACEBACK):
+        import traceback
+
+        for line in "".join(traceback.format_exception(error)).splitlines():
+            say(visible(line))
+    where = "with the lines above" if os.environ.get(TRACEBACK) else f"with the traceback, which {TRACEBACK}=1 shows"
+    say(f"internal error, a flaw of amuros: {visible(repr(error))[:_LONGEST]}; please report it at {ISSUES}, {where}")
+    return INTERNAL_ERROR
 
 
 def say(message: str) -> None:

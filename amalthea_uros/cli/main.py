@@ -128,7 +128,8 @@ class LazyGroup(click.Group):
 def cli() -> None:
     """Build, check and analyze AMALTHEA timing models (Eclipse APP4MC .amxmi).
 
-    Exit codes: 0 success, 1 findings, errors in an app.yaml, differences or missed requirements, 2 wrong use or unreadable input.
+    Exit codes: 0 success, 1 findings, errors in an app.yaml, differences or missed requirements, 2 wrong use or unreadable input,
+    70 a flaw of amuros itself.
     """
 
 

@@ -15,7 +15,7 @@ from types import FrameType
 from typing import Any
 
 from amalthea_uros._internal.own_processes import forget_working_folder
-from amalthea_uros.cli.ends import INTERRUPTED, failed, say
+from amalthea_uros.cli.ends import INTERRUPTED, broken, failed, say
 
 #: Signals after which everything is cleaned up; one that the caller ignores, as `nohup` does, remains ignored.
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
@@ -55,6 +55,8 @@ def _code() -> int:
     except MemoryError:
         say("not enough memory; the input is too large for this computer, or for its limits")
         code = 2
+    except Exception as error:
+        code = broken(error)
     try:
         for stream in filter(None, (sys.stdout, sys.stderr)):
             stream.flush()

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from amalthea_uros.diagnostics import Finding
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.findings.kind import FindingKind, ids_in, kind_in
 
 #: The letters with which the ids of a family start, and where its findings come from.
@@ -36,7 +36,7 @@ FAMILIES = {
 }
 
 #: What the ids of findings about the content of a readable description start with; `YML00` is for texts that are no YAML.
-_CONTENT = ("YML01", "APP", "UR1")
+_CONTENT = ("YML01", "APP", "UR1", "EXE")
 
 _FOLDER = Path(__file__).parent / "families"
 _ID = re.compile(r"([A-Z]{2,3})\d{3}")
@@ -66,8 +66,9 @@ def find(identifier: str) -> FindingKind | None:
 
 
 def is_unreadable(findings: Iterable[Finding]) -> bool:
-    """Whether one of the findings that ended the reading is about more than the content of a description."""
-    return any(not finding.rule.startswith(_CONTENT) for finding in findings)
+    """Whether one of the errors that ended the reading is about more than the content of a description."""
+    ending = [finding for finding in findings if finding.severity is Severity.ERROR]
+    return any(not finding.rule.startswith(_CONTENT) for finding in ending)
 
 
 def _file(family: str) -> Path:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.results.explanations import CallbackExplanation, ChainExplanation, ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
     from amalthea_uros.design.improvements import Improvements
+    from amalthea_uros.design.missing_values import MissingValues
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -67,6 +68,7 @@ class AnalysisResult(Brief, Shown):
     with_metrics : whether the metrics of all processes are shown
     differences : what changes did before the analysis
     impact : what they do to the results; None without changes
+    missing : what can be stated so that more processes have a response time; None if it is not wanted, or nothing helps
     """
 
     paths: tuple[Path, ...]
@@ -83,6 +85,7 @@ class AnalysisResult(Brief, Shown):
     with_metrics: bool = False
     differences: tuple[Difference, ...] = ()
     impact: Impact | None = None
+    missing: MissingValues | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +131,7 @@ def analyze_files(
     all_methods: bool = False,
     with_metrics: bool = False,
     with_bus: bool = False,
+    with_missing: bool = False,
 ) -> AnalysisResult:
     """Analyze an `app.yaml` or AMALTHEA models.
 
@@ -139,6 +143,7 @@ def analyze_files(
     all_methods : show the values of all methods for chains
     with_metrics : show the metrics of all processes
     with_bus : also analyze the messages on the CAN bus of an `app.yaml`
+    with_missing : also find out what can be stated so that more processes have a response time
 
     Raises
     ------
@@ -158,6 +163,11 @@ def analyze_files(
         from amalthea_uros.analyze.priorities.assignment import propose_priorities
 
         proposals = tuple(propose_priorities(analysis))
+    missing = None
+    if with_missing:
+        from amalthea_uros.design.missing_values import missing_values
+
+        missing = missing_values(changed.system, changed.settings, analysis, changed.changes)
     return AnalysisResult(
         paths=changed.opened.paths,
         task_periods=changed.opened.task_periods,
@@ -172,6 +182,7 @@ def analyze_files(
         with_metrics=with_metrics,
         differences=changed.differences,
         impact=None if before is None else impact(before, analysis),
+        missing=missing,
     )
 
 

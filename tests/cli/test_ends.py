@@ -5,6 +5,7 @@ import resource
 import signal
 import subprocess
 import sys
+import tomllib
 import xml.etree.ElementTree as ElementTree
 
 import pytest
@@ -176,6 +177,25 @@ def test_the_command_line_ends_in_words_when_the_memory_is_short():
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, text=True)
     assert run.returncode == 2
     assert run.stderr.startswith("amuros: not enough memory")
+
+
+BROKEN = (
+    "import amalthea_uros.cli.main as m\ndef main(): raise KeyError('a\\x1bb')\nm.main = main\n"
+    "from amalthea_uros.cli.process import run; run()"
+)
+
+
+@pytest.mark.parametrize("is_shown", [False, True])
+def test_a_flaw_of_the_program_is_told_in_a_sentence_and_by_a_code_of_its_own(is_shown):
+    environment = {name: value for name, value in os.environ.items() if name != "AMUROS_TRACEBACK"}
+    environment |= {"AMUROS_TRACEBACK": "1"} if is_shown else {}
+    run = subprocess.run([sys.executable, "-c", BROKEN], capture_output=True, check=False, text=True, env=environment)
+    assert run.returncode == 70
+    *before, sentence = run.stderr.splitlines()
+    assert sentence.startswith(r"amuros: internal error, a flaw of amuros: KeyError('a\x1bb'); please report it at https://")
+    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["urls"]["Issues"] in sentence
+    assert any("Traceback" in line for line in before) == is_shown
+    assert ("AMUROS_TRACEBACK=1" in sentence) != is_shown
 
 
 @pytest.mark.parametrize("command", WITHOUT)

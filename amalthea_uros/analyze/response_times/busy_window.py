@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: Greater sums could wrap.
 MAX_SUM = 2.0**62
+#: Approximate rates that differ by less are compared exactly.
+_DOUBT = 1e-6
 
 
 @dataclass(slots=True)
@@ -162,17 +164,20 @@ class Interference:
     def _of_others(self, window: Time) -> Time:
         return sum(task.demand.max_demand(task.events.eta_plus(window)) for task in self.others)
 
-    def window(self, fixed: Time, start: Time) -> Time | None:
+    def window(self, fixed: Time, start: Time, horizon: Time = LIMIT) -> Time | None:
         """The shortest window that serves a fixed demand and the interference in it; None if it never ends.
 
         Parameters
         ----------
         start : a lower bound of the window
+        horizon : longer windows are of no use, and may be None, too
         """
         if not self.is_countable:
             return None
         if self.supply is not FULL:
             return self._supplied_window(fixed, start)
+        if self._never_ends(fixed):
+            return None
         rows = self.rows
         window = max(1, fixed, start)
         for _ in range(MAX_STEPS):
@@ -182,11 +187,21 @@ class Interference:
             window = least_fixed_point(
                 window, fixed + others, rows.periods, rows.jitters, rows.distances, rows.demands, self.row_count, rows.limited
             )
-            if window > LIMIT:
+            if window > min(LIMIT, horizon):
                 return None
             if not self.others or self._of_others(window) == others:
                 return window
         return None
+
+    def _never_ends(self, fixed: Time) -> bool:
+        """Whether more is always demanded than served: what is activated in a window is at least its length times the rate.
+
+        Without this, a window of a core with a load of exactly 1 would be searched for up to the limit, in steps of the fixed demand.
+        """
+        if self.rate < 1 - _DOUBT:
+            return False
+        rate = sum(map(demand_rate, self.tasks), Fraction(0))
+        return rate > 1 or (rate == 1 and fixed > 0)
 
     def _supplied_window(self, fixed: Time, start: Time) -> Time | None:
         window = max(1, start)
@@ -202,7 +217,7 @@ class Interference:
     def overloads_with(self, task: AnalysedTask) -> bool:
         """Whether these tasks and another one demand more than the supply, exactly."""
         excess = self.rate + approximate_demand_rate(task) - float(self.supply.rate)
-        if abs(excess) > 1e-6:
+        if abs(excess) > _DOUBT:
             return excess > 0
         return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > self.supply.rate
 

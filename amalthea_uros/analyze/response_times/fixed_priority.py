@@ -56,8 +56,10 @@ def response_time(
         return unbounded(best, higher, task, METHOD, SOURCE), start
     completions: list[Time] = []
     limit = max_jobs(task)
+    # No window can end before one of the jobs after it if it is longer than the distance of the last one.
+    horizon = task.events.delta_min(limit)
     for job in range(1, limit):
-        window = higher.window(blocking + task.demand.max_demand(job), completions[-1] if completions else start)
+        window = higher.window(blocking + task.demand.max_demand(job), completions[-1] if completions else start, horizon)
         if window is None:
             break
         completions.append(window)

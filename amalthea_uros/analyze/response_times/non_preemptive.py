@@ -56,7 +56,7 @@ def response_time(
     if others.overloads_with(task):
         return unbounded(task.demand.best, others, task, METHOD, SOURCE)
     limit = max_jobs(task)
-    period = Interference.of([*higher, task]).window(blocking, 0)
+    period = Interference.of([*higher, task]).window(blocking, 0, task.events.delta_min(limit + 1))
     if period is None or (jobs := task.events.eta_plus(period)) > limit:
         reason = f"its busy period has more than {limit:,} jobs: tasks at this priority or higher need nearly all of the core"
         return Response(worst=None, best=task.demand.best, method=METHOD, source=SOURCE, reason=reason)

@@ -94,13 +94,18 @@ def _check_holder(stimulus: Stimulus, field: str, what: str) -> None:
         raise InvalidArgumentError(f"{what} is {type(stimulus).__name__}, which has no {field}; these have one: {classes}")
 
 
-def _with_process_value(system: System, name: str, field: str, value: object) -> System:
+def _with_process_value(system: System, name: str, field: str, value: Any) -> System:
     """The system in which the only stimulus of a process has another value; other processes keep theirs."""
     process = system.processes[name]
     found = _stimuli(process, system)
+    place = TASKS if isinstance(process, Task) else ISRS
+    if field == "period" and not process.stimuli:
+        # Nothing activates it yet. Only the distance of its activations is stated, so nothing is known of the phase.
+        added = RelativePeriodic(name=_unused_name(f"period of {name}", system), distance=Constant(value), has_maximum=True)
+        return place.with_fields(STIMULI.with_item(system, added), name, stimuli=(added.name,))
     if len(found) != 1:
         names = ", ".join(stimulus.name for stimulus in found)
-        reason = f"has several stimuli ({names}); change one of these" if found else "has no stimulus"
+        reason = f"has several stimuli ({names}); change one of these" if found else f"has no stimulus; state {name}.period"
         raise InvalidArgumentError(f"{name!r} {reason}")
     stimulus = found[0]
     _check_holder(stimulus, field, f"the stimulus {stimulus.name!r} of {name!r}")
@@ -111,7 +116,6 @@ def _with_process_value(system: System, name: str, field: str, value: object) ->
         message = f"{stimulus.name!r} activates other processes, too, and an event refers to it; change {stimulus.name}.{field}"
         raise InvalidArgumentError(f"the stimulus {message} for all of them")
     own = replace(stimulus, name=_unused_name(f"{stimulus.name} of {name}", system), **fields)
-    place = TASKS if isinstance(process, Task) else ISRS
     renamed = tuple(own.name if each == stimulus.name else each for each in process.stimuli)
     return place.with_fields(STIMULI.with_item(system, own), name, stimuli=renamed)
 

@@ -20,6 +20,7 @@ from amalthea_uros.design.changes.key import (
 )
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
+from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Parameter, Parent, Scheduler
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores, standard_policy
@@ -33,6 +34,7 @@ class _Dispatchers:
 
     Attributes
     ----------
+    allocation : makes one of a process and what dispatches it
     field : of an allocation, with the name of what dispatches the process; also the name of the key
     names : of those in a system
     cores : those for which one is responsible
@@ -45,6 +47,7 @@ class _Dispatchers:
     names: Callable[[System], Iterable[str]]
     cores: Callable[[str, System], tuple[str, ...]]
     has_affinity: bool
+    allocation: Callable[[str, str], TaskAllocation | IsrAllocation]
 
     @property
     def keys(self) -> Mapping[str, Key[str]]:
@@ -67,9 +70,12 @@ class _Dispatchers:
         return ", ".join(self._allocations(configuration.system, process)) or UNSET
 
     def _set(self, configuration: Configuration, process: str, name: str) -> Configuration:
-        """Map a process to something else, without a preference for one of its cores."""
-        self._present(configuration.system, process)
-        require(self.kind, [name], self.names(configuration.system))
+        """Map a process, or map it to something else, without a preference for one of its cores."""
+        system = configuration.system
+        require(self.kind, [name], self.names(system))
+        if not self._allocations(system, process):
+            return configuration._replace(system=self.place.with_item(system, self.allocation(process, name)))
+        self._present(system, process)
         return self._mapped(configuration, process, name, ())
 
     def _set_core(self, configuration: Configuration, process: str, core: str) -> Configuration:
@@ -113,6 +119,7 @@ TASK_KEYS = _Dispatchers(
     names=lambda system: system.schedulers,
     cores=scheduler_cores,
     has_affinity=True,
+    allocation=lambda task, scheduler: TaskAllocation(task=task, scheduler=scheduler),
 ).keys
 ISR_KEYS = _Dispatchers(
     kind="interrupt controller",
@@ -121,6 +128,7 @@ ISR_KEYS = _Dispatchers(
     names=lambda system: system.interrupt_controllers,
     cores=_controller_cores,
     has_affinity=False,
+    allocation=lambda isr, controller: IsrAllocation(isr=isr, controller=controller),
 ).keys
 
 

@@ -29,6 +29,7 @@ from amalthea_uros.report.basics.document import (
     section,
     table,
 )
+from amalthea_uros.report.documents.missing_values import missing_section
 from amalthea_uros.report.wording.cells import (
     UNKNOWN,
     about,
@@ -78,6 +79,7 @@ def analysis_document(result: AnalysisResult) -> Document:
             *map(priorities_section, result.proposals or ()),
             section("Methods", Sentences(list(dict.fromkeys(_methods_of_responses(analysis))))),
             section("Assumptions", Sentences(analysis.assumptions)),
+            missing_section(result),
         ),
         closing_line(analysis.summary),
     )

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.analyze.results.analysis import Judged
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.findings.grouping import names_in
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.basics.document import (
     Tone,
 )
-from amalthea_uros.report.documents.judged import judged_items, why
+from amalthea_uros.report.documents.judged import concerned, judged_items, why
 from amalthea_uros.report.wording.cells import tone_of, verdict_badge
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import ReportContent
@@ -63,13 +66,25 @@ def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
         yield ", ".join(distinct[:_MOST_NAMES]) + more, reason
 
 
+def _unreported(warnings: Iterable[Finding], rows: Iterable[Judged]) -> Iterator[Finding]:
+    """The warnings without those that give the reason of a row, or of another warning, for the same object once more."""
+    reported = {(name, why(row)) for row in rows for name in (row.name, concerned(row))}
+    for warning in warnings:
+        # Such as "the chain 'c' is not evaluated: the event has no event type".
+        what, _, reason = warning.message.partition(": ")
+        repeated = {(name, reason) for name in names_in(replace(warning, message=what))}
+        if not reason or reported.isdisjoint(repeated):
+            yield warning
+        reported |= repeated
+
+
 def opening(content: ReportContent) -> Opening:
     """The verdict, and what is missed or unknown."""
     summary = content.analysis.summary
     tone = tone_of(summary.schedulable)
     overloads = [(core.name, "the core is overloaded") for core in summary.overloaded]
-    rows = (item for item in judged_items(content.analysis) if item.verdict is not Verdict.MET)
+    rows = [item for item in judged_items(content.analysis) if item.verdict is not Verdict.MET]
     others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
-    warnings = [(each.rule, each.message) for each in content.warnings]
+    warnings = [(each.rule, each.message) for each in _unreported(content.warnings, rows)]
     reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
     return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))

@@ -9,6 +9,7 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
+from amalthea_uros.design.missing_values import MissingValues
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, TimePart
 from amalthea_uros.report.fields.changes import CHANGED
 from amalthea_uros.report.fields.declaration import ABSENT, Field, declare, given, json_of
@@ -78,7 +79,9 @@ declare(
     ("explanation", _explanation),
     ("sensitivity", given("sensitivity")),
     ("priorities", given("proposals")),
+    ("missing", given("missing")),
 )
+declare(MissingValues, ("set", lambda missing: list(map(str, missing.changes))), "gained", "lacks_schedulers")
 declare(
     ProcessorResult,
     "name",

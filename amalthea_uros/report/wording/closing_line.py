@@ -12,6 +12,7 @@ from amalthea_uros.analyze.results.processes import ProcessorResult, Requirement
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure
+from amalthea_uros.timing.demand.plausibility import unit_hint
 from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
 
 #: Reasons that are only consequences of other reasons end like this.
@@ -52,7 +53,9 @@ def _failures(summary: SystemSummary) -> str:
 
 def _core_failure(core: ProcessorResult) -> str:
     load = rounded(core.at_least * 100, Rounding.DOWN, limit=100)
-    return f"the load of {core.name} is {'at least ' if core.worst is None else ''}{number_text(load)}%"
+    hint = unit_hint(core.at_least, core.frequency)
+    text = f"the load of {core.name} is {'at least ' if core.worst is None else ''}{number_text(load)}%"
+    return f"{text} ({hint})" if hint else text
 
 
 def _failure(item: Judged) -> str:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection, Iterable, Sequence
-from itertools import zip_longest
+from itertools import groupby, islice, zip_longest
+from pathlib import Path
 from textwrap import wrap
 from typing import IO
 
@@ -78,6 +80,28 @@ def _folded_cell(cell: str, width: int) -> str:
     return cell if len(cell) <= width else "\n".join(wrap(cell, width))
 
 
+#: Of so many findings of a kind in a row each is written; of more, the first ones.
+_WHOLE = 3
+#: Of the others so many places.
+_PLACES = 8
+#: The parts that differ between messages of a kind: names in quotes, and numbers.
+_VARIABLE = re.compile(r"""'[^']*'|"[^"]*"|\d[\d,.]*""")
+
+
+def kind_of_message(finding: Finding) -> tuple[str, Severity, str, Path | None]:
+    """The properties that findings of a kind in a file share."""
+    path = finding.location.path if finding.location else None
+    return finding.rule, finding.severity, _VARIABLE.sub("", finding.message), path
+
+
+def _more(findings: Sequence[Finding]) -> str:
+    """How many more findings of a kind there are, and where."""
+    places = dict.fromkeys(finding.location.line for finding in findings if finding.location and finding.location.line)
+    lines = ", ".join([*map(str, islice(places, _PLACES)), *(["..."] if len(places) > _PLACES else [])])
+    where = f", in line{'s' if len(places) > 1 else ''} {lines}" if places else ""
+    return f"and {len(findings):,} more {findings[0].rule} of this kind{where}"
+
+
 #: Longer source lines are shown in part; scheduler descriptions have a thousand characters.
 SNIPPET_WIDTH = 100
 
@@ -115,15 +139,27 @@ class Terminal:
         self.line(self.style(text, "1"))
 
     def findings(self, findings: Iterable[Finding]) -> None:
-        """Write findings: place, rule and message, the source line with a caret, what to do."""
-        for finding in findings:
-            where = f"{self.style(str(finding.location), '1')}: " if finding.location else ""
-            severity = self.style(f"{finding.rule} {finding.severity}", _COLOURS[finding.severity])
-            self.line(f"{where}{severity}: {finding.message}")
-            if finding.location:
-                self.snippet(finding.location)
-            if finding.help:
-                self.line(f"  {self.style('help:', '36')} {finding.help}")
+        """Write findings: place, rule and message, the source line with a caret, what to do.
+
+        Of many of a kind in a row, the first ones are written, and the places of the others.
+        """
+        for _, run in groupby(findings, kind_of_message):
+            alike = list(run)
+            shown = _WHOLE if len(alike) > _WHOLE + 1 else len(alike)
+            for finding in alike[:shown]:
+                self.finding(finding)
+            if others := alike[shown:]:
+                self.line(f"  {self.style(_more(others), '2')}")
+
+    def finding(self, finding: Finding) -> None:
+        """Write one finding."""
+        where = f"{self.style(str(finding.location), '1')}: " if finding.location else ""
+        severity = self.style(f"{finding.rule} {finding.severity}", _COLOURS[finding.severity])
+        self.line(f"{where}{severity}: {finding.message}")
+        if finding.location:
+            self.snippet(finding.location)
+        if finding.help:
+            self.line(f"  {self.style('help:', '36')} {finding.help}")
 
     def snippet(self, location: Location) -> None:
         """Write the source line of a place and a caret below."""

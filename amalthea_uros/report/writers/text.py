@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import groupby
 from typing import IO
 
 from amalthea_uros.report.basics.display import is_brief
@@ -41,6 +42,14 @@ def write_document(document: Document, terminal: Terminal) -> None:
 
 def _write_blocks(blocks: Iterable[Block], terminal: Terminal) -> None:
     """Write tables and sentences; pictures and what is folded in a page are not for terminals."""
+    for is_plain, group in groupby(blocks, lambda block: isinstance(block, ShownFinding) and not block.notes):
+        if is_plain:
+            terminal.findings(block.finding for block in group if isinstance(block, ShownFinding))
+        else:
+            _write_others(group, terminal)
+
+
+def _write_others(blocks: Iterable[Block], terminal: Terminal) -> None:
     for block in blocks:
         match block:
             case Table():
@@ -49,7 +58,7 @@ def _write_blocks(blocks: Iterable[Block], terminal: Terminal) -> None:
                 for sentence in block.sentences:
                     terminal.line(" " * block.indent + _styled(sentence, terminal))
             case ShownFinding():
-                terminal.findings([block.finding])
+                terminal.finding(block.finding)
                 for name, note in block.notes.items():
                     terminal.line(f"  {terminal.style(f'{name}:', '36')} {note}")
             case Listing():

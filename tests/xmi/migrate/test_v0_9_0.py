@@ -349,3 +349,10 @@ def test_old_content_under_the_new_namespace_is_converted(convert):
 def test_damaged_files(convert, content):
     convert(content)
     convert(content, "0.9.2")
+
+
+def test_the_only_system_without_a_name_becomes_a_structure_with_one(convert):
+    assert [node.name for node in convert("<hwModel><system/></hwModel>")[0].find("hwModel", "structures")] == ["System"]
+    # Two objects cannot have one name.
+    two = convert('<hwModel><system/><system name="System"/></hwModel>')[0].find("hwModel", "structures")
+    assert sorted(node.name for node in two) == ["", "System"]

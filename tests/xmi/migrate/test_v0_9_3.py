@@ -241,3 +241,17 @@ def test_a_root_that_states_a_class_of_parts_is_survived(tmp_path):
     (path,) = written(tmp_path, "0.9.2", "")
     path.write_text(path.read_text("utf-8").replace("<am:Amalthea ", '<am:Amalthea t="LatencyConstant" '), "utf-8")
     migrated([path], "0.9.3")
+
+
+@pytest.mark.parametrize(("most", "is_stated"), [("10", True), ("11", False)])
+def test_the_recurrence_of_a_periodic_activation_is_stated_where_it_follows(tmp_path, most, is_stated):
+    ends = f'<min value="10" unit="ms"/><max value="{most}" unit="ms"/>'
+    models, _ = migrated(
+        written(tmp_path, "0.9.2", f'<swModel><activations t="PeriodicActivation">{ends}</activations></swModel>'), "0.9.3"
+    )
+    (activation,) = models.trees[0].root.find("swModel", "activations")
+    assert [(part.tag, part.get("value")) for part in activation.children] == [
+        ("min", "10"),
+        ("max", most),
+        *([("recurrence", "10")] if is_stated else []),
+    ]

@@ -24,6 +24,7 @@ from amalthea_uros.metamodel.classes import (
     TaskScheduler,
 )
 from amalthea_uros.metamodel.magnitudes import bits
+from amalthea_uros.timing.demand.plausibility import unit_hint
 from amalthea_uros.timing.scheduling.allocation import is_by_priority, sharing_a_priority
 from amalthea_uros.units import data_size_text, number_text
 from amalthea_uros.validate.context import Context
@@ -84,9 +85,10 @@ def _check_overload(context: SystemContext) -> Iterator[SystemProblem]:
         if total > 1:
             largest = sorted(context.loads.get(core, {}).items(), key=lambda item: item[1], reverse=True)
             parts = joined(f"{_percent(share)} by {process!r}" for process, share in largest)
-            yield SystemProblem(
-                context.system.cores[core], f"overload: the worst-case load of {core!r} is {_percent(total)}: {parts}"
-            )
+            message = f"overload: the worst-case load of {core!r} is {_percent(total)}: {parts}"
+            item = context.system.cores[core]
+            hint = unit_hint(total, context.system.frequency_of(item.clock))
+            yield SystemProblem(item, f"{message}; {hint}" if hint else message)
 
 
 def _percent(share: Fraction | int) -> str:

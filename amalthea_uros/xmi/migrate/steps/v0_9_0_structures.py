@@ -100,6 +100,10 @@ class Structures:
         convert_ports(node, self.notes)
         node.tag, node.type, node.target_class = "structures", "", "HwStructure"
         node.attributes["structureType"] = kind
+        if not node.name and kind == "System" and _is_only_child(node):
+            # A system needed no name, a structure does.
+            node.attributes["name"] = kind
+            self.notes.defaulted(node, "name of the structure that was a system without a name", kind, "name")
         self._finish(node, _STRUCTURE, f"{kind} -> structure")
 
     def _convert_inner(self, structures: list[Node]) -> None:
@@ -167,3 +171,8 @@ def nested(node: Node, tag: str) -> list[Node]:
         next(below)
         found += [inner for inner in below if inner.tag == tag]
     return found
+
+
+def _is_only_child(node: Node) -> bool:
+    """Whether no object beside a node can have the name that it gets."""
+    return node.parent is not None and node.parent.all("system", "structures") == [node]

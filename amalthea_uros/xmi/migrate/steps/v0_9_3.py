@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from amalthea_uros.xmi.migrate.steps.tools import by_class, keep_comments
+from amalthea_uros.xmi.migrate.steps.tools import by_class, keep_comments, quantity_text
 from amalthea_uros.xmi.migrate.steps.v0_9_3_ticks import Ticks
 from amalthea_uros.xmi.migrate.steps.v0_9_3_values import CONTINUOUS, TIME, Values
 from amalthea_uros.xmi.tree.model_set import ModelSet, Step
@@ -41,7 +41,7 @@ _STEP_LIMITS = ("maxIncreasePerStep", "maxDecreasePerStep")
 
 def change(models: ModelSet, notes: StepNotes) -> None:
     """Change the content of the files of AMALTHEA 0.9.2."""
-    found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed"))
+    found = by_class(models, (*_DEVIATIONS, *_LATENCIES, "ExecutionNeed", "PeriodicActivation"))
     values = Values(notes)
     ticks = Ticks(models, values, notes)
     ticks.convert_needs(found["ExecutionNeed"])
@@ -61,6 +61,19 @@ def change(models: ModelSet, notes: StepNotes) -> None:
             _convert_deviations(node, place, values, notes)
     for node in found["VariableRateStimulus"]:
         _convert_step_limits(node, notes)
+    for node in found["PeriodicActivation"]:
+        _state_recurrence(node, notes)
+
+
+def _state_recurrence(activation: Node, notes: StepNotes) -> None:
+    """State the recurrence, which is required now, where it follows: the least distance is the greatest one, too."""
+    least, most = activation.child("min"), activation.child("max")
+    if activation.child("recurrence") is not None or least is None or most is None or least.attributes != most.attributes:
+        return
+    recurrence = least.copy()
+    recurrence.tag = "recurrence"
+    activation.insert(recurrence, activation.children.index(most) + 1)
+    notes.converted(activation, "recurrence of a periodic activation: its equal minimum and maximum", quantity_text(least))
 
 
 def _convert_latency(node: Node, values: Values, notes: StepNotes) -> None:

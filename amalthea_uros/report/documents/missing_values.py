@@ -1,0 +1,38 @@
+"""The values that a model leaves open, as a command that states them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from shlex import quote
+
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.design.missing_values import MissingValues
+from amalthea_uros.report.basics.document import Listing, Section, lines, section
+from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.services.analyze import AnalysisResult
+
+_HEADING = "To get numbers, state"
+_NO_SCHEDULERS = (
+    "which scheduler executes each task, on which core: no scheduler of the model is responsible for a core. Files that belong "
+    "together are given together, such as: amuros analyze software.amxmi hardware.amxmi mapping.amxmi"
+)
+
+
+def missing_section(result: AnalysisResult) -> Section:
+    """The command to paste; empty if nothing is missing that can be stated."""
+    if result.missing is None:
+        return section(_HEADING)
+    if result.missing.lacks_schedulers:
+        return section(_HEADING, lines(_NO_SCHEDULERS))
+    number = counted(len(result.missing.gained), "more process")
+    said = f"These values are examples; with yours in their place, {number} can have a response time:"
+    return section(_HEADING, lines(said), Listing("", list(_command(result, result.missing))))
+
+
+def _command(result: AnalysisResult, missing: MissingValues) -> Iterator[str]:
+    words = ["amuros analyze", *(quote(visible(str(path))) for path in result.paths)]
+    words += (f"--set {quote(str(change))}" for change in missing.given)
+    stated = [f"--set {quote(str(change))}" for change in missing.changes]
+    yield f"  {' '.join(words)} \\"
+    for index, option in enumerate(stated, start=1):
+        yield f"    {option}" + (" \\" if index < len(stated) else "")

@@ -1,0 +1,87 @@
+"""What a model leaves open is proposed as changes; each proposal was applied, and nothing of it is needless."""
+
+from dataclasses import replace
+
+import pytest
+from hand_made_systems import of_parts, ticks
+
+from amalthea_uros import build_model, load, save
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.bridge.extract import extract
+from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.changes.change import parse_change
+from amalthea_uros.design.missing_values import missing_values
+from amalthea_uros.perf.mapping import TaskAllocation
+from amalthea_uros.perf.os import Policy
+from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
+from amalthea_uros.services.changed_model import write_changed
+from amalthea_uros.timing.basics.settings import Settings
+
+MS = 10**9
+
+
+def task(name, *used):
+    return Task(name=name, stimuli=used, activities=(ticks(10),))
+
+
+#: At 1 MHz each job takes 10 us. A lacks nothing; B lacks a stimulus; C is not allocated.
+SYSTEM = of_parts(
+    [task("A", "tick"), task("B"), task("C", "tick")],
+    [TaskAllocation(task="A", scheduler="core", priority=3), TaskAllocation(task="B", scheduler="core", priority=2)],
+    [Periodic(name="tick", period=MS)],
+    policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
+)
+
+
+def proposed(system):
+    found = missing_values(system, Settings(), analyze_system(system, Settings()))
+    return None if found is None else ({change.target for change in found.changes}, found.gained)
+
+
+def test_what_is_missing_is_named_and_nothing_else():
+    # As long as nobody knows where C is executed, it may delay A. Its priority is not needed: there is a bound for any order.
+    assert proposed(SYSTEM) == ({"B.period", "C.scheduler"}, ("A", "B", "C"))
+
+
+def test_with_the_proposal_all_processes_have_a_response_time():
+    found = missing_values(SYSTEM, Settings(), analyze_system(SYSTEM, Settings()))
+    after = analyze_system(*apply(SYSTEM, Settings(), found.changes))
+    # In the worst of all orders each waits for two others.
+    assert {process.response.worst for process in after.processes} == {30 * MS // 1000}
+
+
+def test_a_scheduler_by_deadlines_needs_deadlines():
+    edf = of_parts(
+        [task("A", "tick"), task("B", "tick")],
+        [TaskAllocation(task=name, scheduler="core") for name in "AB"],
+        [Periodic(name="tick", period=MS)],
+        policy=Policy.EARLIEST_DEADLINE_FIRST,
+    )
+    assert proposed(edf) == ({"A.deadline", "B.deadline"}, ("A", "B"))
+
+
+def test_what_has_all_its_response_times_lacks_nothing():
+    whole = replace(SYSTEM, software=replace(SYSTEM.software, tasks=SYSTEM.software.tasks[:1]))
+    assert proposed(replace(whole, mapping=replace(whole.mapping, tasks=whole.mapping.tasks[:1]))) is None
+
+
+def test_no_change_can_state_a_scheduler_that_is_not_there():
+    lonely = replace(SYSTEM, os=replace(SYSTEM.os, systems=()), mapping=replace(SYSTEM.mapping, tasks=()))
+    found = missing_values(lonely, Settings(), analyze_system(lonely, Settings()))
+    assert (found.lacks_schedulers, found.changes) == (True, ())
+
+
+def test_a_stated_period_says_nothing_of_the_phase():
+    """Not an offset of 0, which would make the releases of both tasks known."""
+    changed = apply(SYSTEM, Settings(), [parse_change("B.period=2ms")]).system
+    (name,) = changed.processes["B"].stimuli
+    assert isinstance(changed.stimuli_by_name[name], RelativePeriodic)
+
+
+@pytest.mark.parametrize("change", ["B.period=2ms", "C.scheduler=core"])
+def test_what_is_added_is_written_to_a_model(change, tmp_path):
+    given, path = tmp_path / "given.amxmi", tmp_path / "changed.amxmi"
+    save(build_model(SYSTEM), given)
+    write_changed([given], [parse_change(change)], Settings(), path)
+    assert extract(load(path)).system == apply(extract(load(given)).system, Settings(), [parse_change(change)]).system
