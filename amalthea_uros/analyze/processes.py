@@ -62,7 +62,7 @@ def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:
     item = solution.context.scheduled.get(found.name)
     if item is None or item.equal_priority is not EqualPriority.UNKNOWN or found.verdict is not Verdict.UNKNOWN:
         return found
-    why = "it has no priority" if item.priority is None else "a task of its scheduler has no priority"
+    why = item.order_gap
     if found.response is None or found.response.worst is None:
         return replace(found, reason=f"{why}; {found.reason}")
     needed = rounded_time_text(found.response.worst, Rounding.UP)

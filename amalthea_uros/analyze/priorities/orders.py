@@ -202,7 +202,7 @@ class PriorityOrders:
         if self.analysis.processes[name].deadline is None:
             return f"{name!r} has no deadline"
         if item.equal_priority is EqualPriority.UNKNOWN:
-            return f"{name!r} {'has no priority' if item.priority is None else 'shares its scheduler with a task that has no priority'}"
+            return f"{name!r}: {item.order_gap}"
         if item.server is not None or item.equal_priority is not EqualPriority.FIFO or item.rank != (0, item.priority):
             return f"{name!r} is not scheduled by a single fixed priority"
         return ""

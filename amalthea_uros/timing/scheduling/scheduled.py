@@ -32,6 +32,7 @@ class SchedulingContext:
     rank : higher is served first
     equal_priority, slice : how tasks of the same rank share the core
     group : its members do not preempt each other
+    order_gap : why the order among those of the same rank is unknown; "" if it is known
     """
 
     core: str = ""
@@ -41,6 +42,7 @@ class SchedulingContext:
     deadline: Time | None = None
     slice: Time = 0
     group: str | None = None
+    order_gap: str = ""
 
     @property
     def urgency(self) -> Rank:
