@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.loads import without_doubtful_overload
+from amalthea_uros.analyze.needs import Needs
 from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
 from amalthea_uros.analyze.response_times.propagation import activated_with
 from amalthea_uros.analyze.response_times.solution import Solution
@@ -32,12 +33,13 @@ from amalthea_uros.units import Rounding, Time, rounded_time_text
 def process_results(solution: Solution, executors: Results[ExecutorResult]) -> Iterator[ProcessResult]:
     """The results of all processes."""
     system = solution.context.system
-    metrics = MetricEvaluator(solution)
+    metrics, needs = MetricEvaluator(solution), Needs(solution.context)
     by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
         found = _with_order(_process(name, solution, by_task.get(name)), solution)
         if name not in by_task:
-            yield replace(found, metrics=metrics.of(found))
+            is_open = found.wcet is None and name not in system.transmissions
+            yield replace(found, metrics=metrics.of(found), needs=needs.of(name) if is_open else ())
             continue
         known = metrics.of(found)
         kept = {kind: known[kind] for kind in METRICS_OF_ITERATIONS if kind in known}

@@ -29,6 +29,7 @@ from amalthea_uros.report.basics.document import (
     section,
     table,
 )
+from amalthea_uros.report.documents.needs import NEEDS_HEADING, needs_table
 from amalthea_uros.report.wording.cells import (
     UNKNOWN,
     about,
@@ -64,6 +65,7 @@ def analysis_document(result: AnalysisResult) -> Document:
             *_message_chains(analysis),
             section("Load", _loads(analysis)),
             section("Response times", response_times(analysis)),
+            section(NEEDS_HEADING, needs_table(analysis.processes)),
             section(_CALLBACKS, callbacks(analysis.of_periodic_executors)),
             *map(_executor, analysis.executors),
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),

@@ -7,6 +7,7 @@ from typing import Any
 from amalthea_uros.analyze.priorities.assignment import Proposal
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
+from amalthea_uros.analyze.results.needs import ExecutionOnCores
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, TimePart
@@ -100,6 +101,16 @@ declare(
     *_METHOD,
     ("terms", _terms),
     *_METRICS,
+    "needs",
+)
+declare(
+    ExecutionOnCores,
+    *("core_type", "cores"),
+    ("clock_hz", "frequency"),
+    *("bcet_ps", "acet_ps", "wcet_ps", "least_ticks", "mean_ticks", "most_ticks"),
+    ("utilisation", "load"),
+    ("least_clock_hz", "least_frequency"),
+    "reason",
 )
 declare(CallbackResult, "name", "process", _BCRT, _WCRT, "deadline_ps", "reason", *_METHOD, *_METRICS)
 declare(Metric, "min_ps", ("avg_ps", "mean"), "max_ps", "claim")
