@@ -1,4 +1,4 @@
-"""What processes need on each kind of core, for models that do not say which core executes them, or how fast it is.
+"""The execution times and loads of processes on each kind of core, where the core, or its clock, is not stated.
 
 A job of a process takes the same time wherever it is executed on cores of one type and clock, and the long-run load that it causes
 there is at most its worst execution time, times the highest rate of its activations.
@@ -27,7 +27,7 @@ WITHOUT_WAITS = "without the time for which it waits for events"
 
 @dataclass
 class Needs:
-    """Finds what processes need on each kind of core that they may run on."""
+    """Finds the execution times and loads of processes on each kind of core that they may run on."""
 
     context: TimingContext
     demands: DemandOnAnyCores = field(init=False)
@@ -36,12 +36,12 @@ class Needs:
         self.demands = DemandOnAnyCores(self.context.demand_model)
 
     def of(self, name: str) -> tuple[ExecutionOnCores, ...]:
-        """What a process needs."""
+        """The execution time and the load of a process."""
         process = self.context.system.processes[name]
         has_mean = states_mean(process, self.context.system)
-        found = self.demands.of(process, self._cores.get(name, frozenset()))
+        on_cores = self.demands.of(process, self._cores.get(name, frozenset()))
         remark = WITHOUT_WAITS if self.demands.waits(process) else ""
-        return tuple(_need(each, self._rate(process), has_mean, remark) for each in found)
+        return tuple(_need(each, self._rate(process), has_mean, remark) for each in on_cores)
 
     @cached_property
     def _cores(self) -> Mapping[str, frozenset[str]]:
@@ -56,19 +56,19 @@ class Needs:
         return None if self.demands.waits(process, (None, Waiting.ACTIVE)) else self._rates.get(process.name)
 
 
-def _need(found: DemandOnCores, rate: Fraction | None, has_mean: bool, remark: str) -> ExecutionOnCores:
-    demand, on = found.demand, found.on
+def _need(demanded: DemandOnCores, rate: Fraction | None, has_mean: bool, remark: str) -> ExecutionOnCores:
+    demand, on = demanded.demand, demanded.on
     if demand is None:
-        return ExecutionOnCores(core_type=on.type, cores=on.cores, frequency=on.frequency, reason=found.reason)
+        return ExecutionOnCores(core_type=on.type, cores=on.cores, frequency=on.frequency, reason=demanded.reason)
     # Picoseconds or ticks per picosecond.
-    load = None if rate is None else demand.mean_worst * rate / found.time_base
+    load = None if rate is None else demand.mean_worst * rate / demanded.time_base
     return ExecutionOnCores(
         core_type=on.type,
         cores=on.cores,
         frequency=on.frequency,
-        best=min_time(demand.best, found.time_base),
-        mean=demand.mean / found.time_base if has_mean else None,
-        worst=max_time(demand.worst, found.time_base),
+        best=min_time(demand.best, demanded.time_base),
+        mean=demand.mean / demanded.time_base if has_mean else None,
+        worst=max_time(demand.worst, demanded.time_base),
         load=load if on.frequency is not None else None,
         least_frequency=None if load is None or on.frequency is not None else Frequency(load * SECOND),
         reason=remark,

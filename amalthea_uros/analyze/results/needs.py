@@ -1,4 +1,4 @@
-"""What a process needs on cores of each kind, where no single core with a known clock is stated."""
+"""The execution time of a process on cores of each kind, where no single core with a known clock is stated."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ExecutionOnCores(Shown):
     mean : None if no mean is stated
     load : of one of these cores in the worst case, 1 is full; None if the clock or the activations are unknown
     least_frequency : the clock that the process fills alone in the worst case; None if the clock is known, or the activations are not
-    reason : why the execution time is unknown, or what is no part of it
+    reason : why the execution time is unknown, or what it does not contain
     """
 
     core_type: str | None

@@ -1,4 +1,4 @@
-"""What processes need on each kind of core, where no single core with a known clock is stated."""
+"""Execution times on each kind of core, where no single core with a known clock is stated."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def needs_table(processes: Iterable[ProcessResult]) -> Table:
     """The execution times and loads of processes on each kind of core."""
     rows = [_row(process.name, each) for process in processes for each in process.needs]
     columns = ("process", "type of core", ">cores", ">clock", ">best", ">mean", ">worst", ">load of one core", "")
-    return table("Execution times on each kind of core", columns, [*rows, *_together(processes)])
+    return table("Execution times on each kind of core", columns, [*rows, *_sum_rows(processes)])
 
 
 def _row(process: str, need: ExecutionOnCores) -> tuple[Cell, ...]:
@@ -58,8 +58,8 @@ def _load(load: Fraction | None, frequency: Fraction | None) -> str:
     return UNKNOWN if load is None else load_text(load, Rounding.UP)
 
 
-def _together(processes: Iterable[ProcessResult]) -> Iterator[tuple[Cell, ...]]:
-    """All of them on one core of a kind, if the load of each one is known there."""
+def _sum_rows(processes: Iterable[ProcessResult]) -> Iterator[tuple[Cell, ...]]:
+    """The load of all of them on one core of a kind, if the load of each one is known there."""
     of_all = [process.needs for process in processes if process.needs]
     for need in of_all[0] if len(of_all) > 1 else ():
         alike = [each for needs in of_all for each in needs if _kind(each) == _kind(need)]

@@ -1,4 +1,4 @@
-"""What processes need on each kind of core, where the model does not state a single core with a known clock.
+"""The execution demand of processes on each kind of core, where the model does not state a single core with a known clock.
 
 Cores of one type and clock are one kind. Where the clock is unknown, or the model has no cores, the demand is counted in ticks: at a
 terahertz, a tick takes a picosecond. Without cores, each type that a demand names is a kind, and one stands for all others.
@@ -108,11 +108,11 @@ class DemandOnAnyCores:
         return self.stated.frequency(core) if core in self.stated.system.cores else None
 
     def _alike(self, cores: Collection[str]) -> Sequence[AlikeCores]:
-        found: dict[tuple[str | None, Frequency | None], list[str]] = {}
+        by_kind: dict[tuple[str | None, Frequency | None], list[str]] = {}
         for name, core in self._counting.system.cores.items():
             if name in cores:
-                found.setdefault((core.type, self._frequency(name)), []).append(name)
-        return [AlikeCores(core_type, frequency, tuple(names)) for (core_type, frequency), names in found.items()]
+                by_kind.setdefault((core.type, self._frequency(name)), []).append(name)
+        return [AlikeCores(core_type, frequency, tuple(names)) for (core_type, frequency), names in by_kind.items()]
 
     def _on(self, alike: AlikeCores, process: Process) -> DemandOnCores:
         model = self._counting

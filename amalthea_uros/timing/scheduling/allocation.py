@@ -76,7 +76,7 @@ def _effective(
     """A parameter of a task, or of the nearest group that has it."""
     groups = takewhile(lambda each: each.policy == Policy.GROUPING, upwards(allocation.scheduler, system))
     stated = (allocation, *(each.parent for each in groups if each.parent is not None))
-    return next((found for each in stated if (found := value(each)) is not None), None)
+    return next((number for each in stated if (number := value(each)) is not None), None)
 
 
 def operating_system_of(system: System) -> Mapping[str, str]:

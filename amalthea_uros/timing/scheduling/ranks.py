@@ -169,7 +169,7 @@ class SchedulingOrder:
         return SchedulingContext(server=server.name, rank=(parameters.required(parameters.priority, "priority"),))
 
     def _order_gap(self, scheduler: Scheduler, parameters: _Parameters) -> str:
-        """What a scheduler lacks that decides for tasks only, so that it may serve them in any order; "" if it lacks nothing."""
+        """Why a scheduler that decides for tasks only may serve them in any order; "" if it has all that its policy needs."""
         if scheduler.name not in self._incomplete() or self._serves_one(scheduler) or not self._serves_tasks(scheduler):
             return ""
         needed = _NEEDED[standard_policy(scheduler.policy) or ""]
@@ -179,8 +179,8 @@ class SchedulingOrder:
     def _incomplete(self) -> frozenset[str]:
         """The schedulers that decide for a task without the priority or the deadline that their policy needs."""
         if self._lacking is None:
-            found = ((deciding_scheduler(task.scheduler, self.system), task) for task in self.system.mapping.tasks)
-            self._lacking = frozenset(each.name for each, task in found if each is not None and self._lacks(task, each))
+            pairs = ((deciding_scheduler(task.scheduler, self.system), task) for task in self.system.mapping.tasks)
+            self._lacking = frozenset(each.name for each, task in pairs if each is not None and self._lacks(task, each))
         return self._lacking
 
     def _lacks(self, task: TaskAllocation, scheduler: Scheduler) -> bool:
@@ -376,7 +376,7 @@ def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, bas
 
 
 _PRIORITY, _DEADLINE = "priority", "deadline"
-#: What the policies need to order what they serve: a deadline that is stated, not one that is only wished for.
+#: The parameter by which policies order tasks: a deadline of the allocation, not one that is only required.
 _NEEDED: Mapping[str, str] = {
     **dict.fromkeys((Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN, *SERVERS), _PRIORITY),
     **dict.fromkeys((Policy.EARLIEST_DEADLINE_FIRST, Policy.DEADLINE_MONOTONIC), _DEADLINE),
