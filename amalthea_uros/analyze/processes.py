@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from amalthea_uros.analyze.loads import without_doubtful_overload
+from amalthea_uros.analyze.loads import share_of_core, without_doubtful_overload
 from amalthea_uros.analyze.response_times.propagation import activated_with
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import ProcessResult
@@ -62,6 +62,7 @@ def process_result(name: str, solution: Solution, executor: ExecutorResult | Non
         reason=response.reason if response is not None else solution.reasons.get(name, ""),
         min_interarrival=events.delta_min(2) if events is not None else None,
         max_interarrival=events.max_interarrival if events is not None and not iterates else None,
+        share=share_of_core(name, solution),
     )
     if executor is not None:
         gap = "" if name in context.demands else context.reasons.get(name, "")

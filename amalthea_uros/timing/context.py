@@ -171,8 +171,12 @@ class TimingContext:
         stimuli = [self.system.stimuli_by_name.get(name) for name in model.stimuli]
         if any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in stimuli):
             return None
+        return self.activations_at_once(process)
+
+    def activations_at_once(self, process: str) -> EventModel | None:
+        """The activations of a process if no job took any time, of which the rate is right; None if they are unknown."""
         try:
-            return self.activations.of(model)
+            return self.activations.of(self.system.processes[process])
         except UnknownError:
             return None
 

@@ -30,6 +30,7 @@ from amalthea_uros.report.basics.document import (
     table,
 )
 from amalthea_uros.report.documents.needs import NEEDS_HEADING, needs_table
+from amalthea_uros.report.documents.overloads import overload_sections
 from amalthea_uros.report.wording.cells import (
     UNKNOWN,
     about,
@@ -64,6 +65,7 @@ def analysis_document(result: AnalysisResult) -> Document:
         (
             *_message_chains(analysis),
             section("Load", _loads(analysis)),
+            *overload_sections(analysis),
             section("Response times", response_times(analysis)),
             section(NEEDS_HEADING, execution_times(analysis)),
             section(_CALLBACKS, callbacks(analysis.of_periodic_executors)),

@@ -8,7 +8,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.results.needs import ExecutionOnCores
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.report.basics.document import Cell, Table, table
-from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, load_text
+from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, clock_text, load_text
 from amalthea_uros.units import Rounding, frequency_text, number_text, rounded
 
 NEEDS_HEADING = (
@@ -54,7 +54,7 @@ def _mean(need: ExecutionOnCores) -> str:
 def _load(load: Fraction | None, frequency: Fraction | None) -> str:
     """A load in percent, or the clock at which it is 100 %."""
     if frequency is not None:
-        return f"100 % at {frequency_text(rounded(frequency, Rounding.UP))}"
+        return f"100 % at {clock_text(frequency)}"
     return UNKNOWN if load is None else load_text(load, Rounding.UP)
 
 

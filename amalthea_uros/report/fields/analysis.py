@@ -93,6 +93,7 @@ declare(
     "name",
     ("kind", lambda process: "isr" if process.is_isr else "task"),
     *("processor", "priority", "preemption", "bcet_ps", "acet_ps", "wcet_ps"),
+    ("utilisation", "share"),
     _BCRT,
     _WCRT,
     "deadline_ps",
