@@ -15,7 +15,6 @@ from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 from amalthea_uros.units import Rounding, rounded_time_text
 
 #: Others are about activations by stimuli.
@@ -54,7 +53,7 @@ def _can_wait(executor: Executor) -> bool:
 def _with_order(result: ProcessResult, solution: Solution) -> ProcessResult:
     """The result, which says so if an order of priorities could decide what is unknown."""
     item = solution.context.scheduled.get(result.name)
-    if item is None or item.equal_priority is not EqualPriority.UNKNOWN or result.verdict is not Verdict.UNKNOWN:
+    if item is None or item.order_gap is None or result.verdict is not Verdict.UNKNOWN:
         return result
     if result.response is None or result.response.worst is None:
         return replace(result, reason=f"{item.order_gap}; {result.reason}")

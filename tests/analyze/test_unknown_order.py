@@ -14,6 +14,7 @@ from support import SHARED
 from unit_player import UnitTask, longest_responses
 
 import amalthea_uros as amuros
+from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Preemption
@@ -126,7 +127,7 @@ def test_no_deadlines_exceed_the_bound(tasks, data):
             assert bound is None or found * US <= bound
 
 
-def played(tasks, priorities, offsets, deadlines=(0, 0, 0)):
+def played(tasks, priorities, offsets, deadlines=(0, 0, 0, 0)):
     """The longest response times of two hyperperiods; the highest priority is served first."""
     rows = [
         UnitTask(period, demand, offset, rank=-priority, is_preemptive=is_preemptive, deadline=deadline)
@@ -135,3 +136,14 @@ def played(tasks, priorities, offsets, deadlines=(0, 0, 0)):
         )
     ]
     return longest_responses(rows, 2 * 120 + max(offsets))
+
+
+def test_priorities_are_proposed_where_there_are_none():
+    # Only the first one as the highest meets both: 6 us of 8 us, and then 15 us of 20 us.
+    (found,) = propose_priorities(analysed([(8, 6, True), (20, 3, True)], [None, None]))
+    assert (found.outcome, found.priorities) == ("proposed", {"T0": 2, "T1": 1})
+
+
+def test_priorities_do_not_help_where_deadlines_are_missing():
+    (found,) = propose_priorities(analysed([(8, 6, True), (20, 3, True)], [None, None], policy=Policy.EARLIEST_DEADLINE_FIRST))
+    assert (found.outcome, found.reason) == ("excluded", "'T0': it has no deadline")

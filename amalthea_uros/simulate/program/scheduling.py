@@ -70,7 +70,7 @@ class Dispatching:
             raise UnknownError(self.context.reasons.get(name, "it is not allocated to a scheduler"))
         else:
             found = self._on_several_cores(allocation)
-        if found.scheduled.equal_priority is EqualPriority.UNKNOWN:
+        if found.scheduled.order_gap is not None:
             raise UnknownError(found.scheduled.order_gap)
         server = self.servers.get(found.scheduled.server or "")
         while server is not None:

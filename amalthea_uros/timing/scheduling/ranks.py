@@ -26,7 +26,7 @@ from amalthea_uros.timing.scheduling.allocation import (
     effective_priority,
     standard_policy,
 )
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, SchedulingContext, Server
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, OrderGap, ScheduledProcess, SchedulingContext, Server
 from amalthea_uros.units import Time
 
 #: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
@@ -168,13 +168,13 @@ class SchedulingOrder:
             return SchedulingContext(server=server.name, rank=())
         return SchedulingContext(server=server.name, rank=(parameters.required(parameters.priority, "priority"),))
 
-    def _order_gap(self, scheduler: Scheduler, parameters: _Parameters) -> str:
-        """Why a scheduler that decides for tasks only may serve them in any order; "" if it has all that its policy needs."""
+    def _order_gap(self, scheduler: Scheduler, parameters: _Parameters) -> OrderGap | None:
+        """Why a scheduler that decides for tasks only may serve them in any order; None if it has all that its policy needs."""
         if scheduler.name not in self._incomplete() or self._serves_one(scheduler) or not self._serves_tasks(scheduler):
-            return ""
-        needed = _NEEDED[standard_policy(scheduler.policy) or ""]
-        is_missing = not parameters.deadline if needed == _DEADLINE else parameters.priority is None
-        return f"it has no {needed}" if is_missing else f"a task of its scheduler has no {needed}"
+            return None
+        if _NEEDED[standard_policy(scheduler.policy) or ""] == _DEADLINE:
+            return OrderGap.OTHER_WITHOUT_DEADLINE if parameters.deadline else OrderGap.NO_DEADLINE
+        return OrderGap.NO_PRIORITY if parameters.priority is None else OrderGap.OTHER_WITHOUT_PRIORITY
 
     def _incomplete(self) -> frozenset[str]:
         """The schedulers that decide for a task without the priority or the deadline that their policy needs."""
