@@ -146,6 +146,7 @@ VALUES = {
     "I.controller=IC1": ("IC0", "IC1"),
     "gear.mode=second": ("first", "second"),
     "number.mode=-3/2": ("1", "-3/2"),
+    "Server.policy=PollingPeriodicServer": ("DeferrableServer", "PollingPeriodicServer"),
     "Server.capacity=3ms": ("2 ms", "3 ms"),
     "Server.budget=3ms": ("2 ms", "3 ms"),
     "Server.period=8ms": ("9 ms", "8 ms"),

@@ -1,14 +1,12 @@
-"""Bounds that hold for any order of priorities or deadlines, against all orders: `python tests/opponent/hunt_orders.py [SYSTEMS] [SEED]`.
+"""Bounds that hold for any order of priorities or deadlines, against all orders of many random systems.
 
-Each system of two to four tasks on one core is played in every order of distinct priorities, and with deadlines of a grid.
+`python -m opponent.hunt_orders [SYSTEMS] [SEED]` with `tests` and `tests/analyze` on the path: each system of two to four tasks on one
+core is played in every order of distinct priorities, and with deadlines of a grid.
 """
 
 import sys
 from itertools import permutations, product
-from pathlib import Path
 from random import Random
-
-sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[1] / "analyze")]
 
 from test_unknown_order import analysed, played, worst
 

@@ -18,7 +18,13 @@ NEEDS_HEADING = (
 
 def needs_table(processes: Iterable[ProcessResult]) -> Table:
     """The execution times and loads of processes on each kind of core."""
-    rows = [_row(process.name, each) for process in processes for each in process.needs]
+    rows = [
+        _row(process.name, each)
+        for process in processes
+        for each in process.needs
+        # The reason is in the table of response times already.
+        if each.worst is not None or each.reason not in process.reason
+    ]
     columns = ("process", "type of core", ">cores", ">clock", ">best", ">mean", ">worst", ">load of one core", "")
     return table("Execution times on each kind of core", columns, [*rows, *_sum_rows(processes)])
 

@@ -390,3 +390,5 @@ _BY_POLICY: Mapping[str, Callable[[Scheduler, _Parameters, SchedulingContext], S
     Policy.RATE_MONOTONIC: _rate_monotonic,
     Policy.EARLIEST_DEADLINE_FIRST: _earliest_deadline_first,
 }
+#: The policies that decide about tasks without a budget.
+ANALYSED = tuple(_BY_POLICY)
