@@ -25,7 +25,7 @@ LINES = {
     "bridge": 2773,
     "cli": 2060,
     "compare": 3440,
-    "design": 4845,
+    "design": 4880,
     "diagnostics": 34,
     "difference": 790,
     "editor": 506,
