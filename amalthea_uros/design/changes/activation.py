@@ -110,8 +110,8 @@ def _with_process_value(system: System, name: str, field: str, value: object) ->
     process = system.processes[name]
     found = _stimuli(process, system)
     if not process.stimuli and field == "period":
-        own = Periodic(name=_unused_name(f"period of {name}", system), period=value)  # type: ignore[arg-type]
-        return _place(process).with_fields(STIMULI.with_item(system, own), name, stimuli=(own.name,))
+        first = Periodic(name=_unused_name(f"period of {name}", system), period=value)  # type: ignore[arg-type]
+        return _place(process).with_fields(STIMULI.with_item(system, first), name, stimuli=(first.name,))
     if len(found) != 1:
         names = ", ".join(stimulus.name for stimulus in found)
         reason = f"has several stimuli ({names}); change one of these" if found else "has no stimulus"

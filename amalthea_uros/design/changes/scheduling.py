@@ -207,7 +207,7 @@ def _set_policy(configuration: Configuration, name: str, policy: str) -> Configu
     return _with_scheduler(configuration, replace(configuration.system.schedulers[name], policy=policy))
 
 
-SCHEDULER_KEYS = {
+SCHEDULER_KEYS: dict[str, Key[Any]] = {
     "policy": Key(_policy, _show_policy, _set_policy),
     "priority": _parent_key("priority", whole_number, str),
     "deadline": _parent_key("deadline", duration, time_text),

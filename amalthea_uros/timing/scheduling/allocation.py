@@ -75,7 +75,7 @@ def _effective(
 ) -> int | None:
     """A parameter of a task, or of the nearest group that has it."""
     groups = takewhile(lambda each: each.policy == Policy.GROUPING, upwards(allocation.scheduler, system))
-    stated = (allocation, *(each.parent for each in groups if each.parent is not None))
+    stated: list[TaskAllocation | Parent] = [allocation, *(each.parent for each in groups if each.parent is not None)]
     return next((number for each in stated if (number := value(each)) is not None), None)
 
 
