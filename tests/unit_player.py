@@ -11,6 +11,7 @@ class UnitTask:
     Attributes
     ----------
     demand : of each job, or by its number, counted from 1
+    deadline : of the jobs of one rank, the one whose deadline is the earliest is served first
     """
 
     period: int
@@ -19,6 +20,7 @@ class UnitTask:
     rank: int = 0
     core: str = ""
     is_preemptive: bool = True
+    deadline: int = 0
 
 
 @dataclass(eq=False)
@@ -71,7 +73,9 @@ def play(tasks: Sequence[UnitTask], until: int, *, to_the_end: bool = False) -> 
             current = running.get(core)
             if current is None or not current.left or tasks[current.task].is_preemptive:
                 here = [job for job in pending if tasks[job.task].core == core]
-                current = running[core] = min(here, key=lambda job: (tasks[job.task].rank, job.release))
+                current = running[core] = min(
+                    here, key=lambda job: (tasks[job.task].rank, job.release + tasks[job.task].deadline)
+                )
             current.reached.append(now)
             if not current.left:
                 pending.remove(current)

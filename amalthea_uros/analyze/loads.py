@@ -68,6 +68,15 @@ def without_doubtful_overload(name: str, solution: Solution) -> Response | None:
     return replace(found, is_overload=False, reason=f"{found.reason}, unless modes exclude a part of it")
 
 
+def share_of_core(name: str, solution: Solution) -> Fraction | None:
+    """The worst-case share of its core that a process needs in the long run; None if its demand or its activations are unknown."""
+    context = solution.context
+    if name not in context.demands:
+        return None
+    events = solution.event_models.get(name) or context.activations_at_once(name)
+    return None if events is None else _demand(name, context).mean_worst * events.rate / context.time_base(name)
+
+
 def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fraction]:
     """The best, mean and worst load of a core; no mean if conditions may suppress activations, or execution times have none."""
     context = solution.context

@@ -1,55 +1,29 @@
-"""The results of all processes: response times, deadlines and metrics."""
+"""The result of a process: response time, deadline and verdict."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 
-from amalthea_uros._internal.by_name import Results
-from amalthea_uros.analyze.loads import without_doubtful_overload
-from amalthea_uros.analyze.response_times.metrics import MetricEvaluator
+from amalthea_uros.analyze.loads import share_of_core, without_doubtful_overload
 from amalthea_uros.analyze.response_times.propagation import activated_with
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.results.processes import Metric, ProcessResult
+from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.executors.bounds.solved_system import METHOD
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.judge.evidence import Ends, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import activation_limit, deadline_limit, deadline_of
-from amalthea_uros.judge.verdict import Verdict, lost_jobs, prove_process
+from amalthea_uros.judge.verdict import lost_jobs, prove_process
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Preemption, Process, Task
 from amalthea_uros.timing.activation.releases import ASSUMPTION
-from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.basics.time_base import max_time, min_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models.models import EventModel, can_be_dense
 from amalthea_uros.timing.jobs.executed import states_mean
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, preemption
-from amalthea_uros.units import Rounding, Time, rounded_time_text
-
-
-def process_results(solution: Solution, executors: Results[ExecutorResult]) -> Iterator[ProcessResult]:
-    """The results of all processes."""
-    system = solution.context.system
-    metrics = MetricEvaluator(solution)
-    by_task = {executor.task: executor for executor in executors}
-    for name in system.processes:
-        found = _with_order(_process(name, solution, by_task.get(name)), solution)
-        if name not in by_task:
-            yield replace(found, metrics=metrics.lazily(found))
-            continue
-        known = metrics.of(found)
-        kept = {kind: known[kind] for kind in METRICS_OF_ITERATIONS if kind in known}
-        if _can_wait(system.executor_of_task[name]) and JobMetric.NET_EXECUTION_TIME in kept:
-            net = kept[JobMetric.NET_EXECUTION_TIME]
-            kept[JobMetric.NET_EXECUTION_TIME] = Metric(min=net.min, max=by_task[name].round.most)
-        yield replace(found, metrics=kept)
-
-
-def _can_wait(executor: Executor) -> bool:
-    """Whether an iteration can wait for the wire or the session after it has begun, which is net execution time, too."""
-    return executor.session is not None or any(handle.publications for handle in executor.handles)
+from amalthea_uros.timing.scheduling.scheduled import preemption
+from amalthea_uros.units import Time
 
 
 def _is_sent_by(name: str, executors: Iterable[Executor]) -> bool:
@@ -57,19 +31,7 @@ def _is_sent_by(name: str, executors: Iterable[Executor]) -> bool:
     return any(publication.transmission == name for handle in handles for publication in handle.publications)
 
 
-def _with_order(found: ProcessResult, solution: Solution) -> ProcessResult:
-    """The result, which says so if an order of priorities could decide what is unknown."""
-    item = solution.context.scheduled.get(found.name)
-    if item is None or item.equal_priority is not EqualPriority.UNKNOWN or found.verdict is not Verdict.UNKNOWN:
-        return found
-    why = "it has no priority" if item.priority is None else "a task of its scheduler has no priority"
-    if found.response is None or found.response.worst is None:
-        return replace(found, reason=f"{why}; {found.reason}")
-    needed = rounded_time_text(found.response.worst, Rounding.UP)
-    return replace(found, reason=f"{why}; as the lowest it needs up to {needed}")
-
-
-def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> ProcessResult:
+def process_result(name: str, solution: Solution, executor: ExecutorResult | None) -> ProcessResult:
     """The result of a process, possibly that of the rounds of an executor; execution times are in picoseconds."""
     context, response = solution.context, without_doubtful_overload(name, solution)
     process, demand = context.system.processes[name], context.stated_demand(name)
@@ -100,6 +62,7 @@ def _process(name: str, solution: Solution, executor: ExecutorResult | None) -> 
         reason=response.reason if response is not None else solution.reasons.get(name, ""),
         min_interarrival=events.delta_min(2) if events is not None else None,
         max_interarrival=events.max_interarrival if events is not None and not iterates else None,
+        share=share_of_core(name, solution),
     )
     if executor is not None:
         gap = "" if name in context.demands else context.reasons.get(name, "")
@@ -119,10 +82,6 @@ def _judged(process: ProcessResult, events: EventModel | None, context: TimingCo
     model = context.system.processes[process.name]
     can_borrow, may_be_less = context.can_borrow(process.name), process.name in context.with_uncertain_activations
     return judged(process, model, evidence_of(process, model, events, can_borrow, may_be_less))
-
-
-#: Others are about activations by stimuli.
-METRICS_OF_ITERATIONS = (JobMetric.RESPONSE_TIME, JobMetric.NET_EXECUTION_TIME)
 
 
 def of_iterations(

@@ -15,7 +15,7 @@ from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
 from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
-from amalthea_uros.analyze.processes import process_results
+from amalthea_uros.analyze.process_results import process_results
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis

@@ -155,6 +155,11 @@ _SETTINGS = all_of(
             help="Factor by which all execution times are multiplied.",
         ),
         click.option(
+            "--quantile",
+            type=click.FloatRange(min=0, min_open=True, max=0.5, max_open=True),
+            help="Probability beyond which values of normal distributions without bounds are taken as impossible, e.g. 1e-9.",
+        ),
+        click.option(
             "--memory",
             type=click.Choice([str(memory) for memory in MemoryModel]),
             default=str(MemoryModel.NONE),
@@ -187,6 +192,7 @@ def settings_options(function: Callable[..., Any]) -> Callable[..., Any]:
         *,
         frequencies: tuple[tuple[str, Frequency], ...],
         scale: float,
+        quantile: float | None,
         memory: str,
         communication: str,
         phases: tuple[tuple[str, Time], ...],
@@ -198,6 +204,7 @@ def settings_options(function: Callable[..., Any]) -> Callable[..., Any]:
             memory=MemoryModel(memory),
             communication=_COMMUNICATION.get(communication),
             phases=dict(phases),
+            quantile=None if quantile is None else Fraction(str(quantile)),
         )
         function(settings=settings, **others)
 

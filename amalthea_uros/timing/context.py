@@ -23,6 +23,7 @@ from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.demand.overheads import ASSUMPTION as OVERHEAD_ASSUMPTION
 from amalthea_uros.timing.demand.overheads import has_overhead_of_tasks
+from amalthea_uros.timing.demand.quantiles import quantile_assumption, with_quantiles
 from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.jobs.executed import states_execution_time, with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
@@ -92,7 +93,10 @@ class TimingContext:
     @classmethod
     def of_scheduling(cls, system: System, settings: Settings | None = None) -> TimingContext:
         """The same without demands and critical sections, for what follows the activities one by one."""
-        context = cls(with_direct_calls(system), settings or Settings())
+        settings = settings or Settings()
+        if settings.quantile is not None:
+            system = with_quantiles(system, settings.quantile)
+        context = cls(with_direct_calls(system), settings)
         if context.system is not system:
             context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
         if has_overhead_of_tasks(system):
@@ -171,8 +175,12 @@ class TimingContext:
         stimuli = [self.system.stimuli_by_name.get(name) for name in model.stimuli]
         if any(isinstance(stimulus, InterProcess | EventTriggered) for stimulus in stimuli):
             return None
+        return self.activations_at_once(process)
+
+    def activations_at_once(self, process: str) -> EventModel | None:
+        """The activations of a process if no job took any time, of which the rate is right; None if they are unknown."""
         try:
-            return self.activations.of(model)
+            return self.activations.of(self.system.processes[process])
         except UnknownError:
             return None
 
@@ -226,6 +234,8 @@ class TimingContext:
             notes.assume(f"all worst-case execution times are multiplied by {float(settings.growth):g}")
         for name, factor in settings.factors.items():
             notes.assume(f"the worst-case execution times of {name} are multiplied by {float(factor):g}")
+        if settings.quantile is not None:
+            notes.assume(quantile_assumption(settings.quantile))
         for label, value in settings.modes.items():
             notes.assume(f"the mode {label} is always {value}")
         if settings.memory is not MemoryModel.NONE:

@@ -137,7 +137,10 @@ class TestOrigins:
     def test_an_unknown_activation(self):
         built = changed(tasks_on_a_core(("T", 10, [ticks(4)], 1, 10)), stimuli=())
         (origin,) = explain_process(analyze_system(built), "T").origins
-        assert (origin.kind, origin.reason) == (OriginKind.ACTIVATION, "it has no stimulus")
+        assert (origin.kind, origin.reason) == (
+            OriginKind.ACTIVATION,
+            "it has no stimulus, and the stimulus 'T_tick' activates no process",
+        )
 
     def test_none_if_there_is_a_bound(self):
         assert explain_process(analyze_system(tasks_on_a_core(("T", 10, [ticks(4)], 1, 10))), "T").origins == ()

@@ -109,7 +109,7 @@ SLICE = stated("timeSliceLength", Duration(2 * US))
             {"short": 3, "long": 4},
             id="Spuri 1996",
         ),
-        pytest.param(EDF, [("T", 4, [ticks(1)], on())], {"T": "it has no deadline"}, id="EDF without a deadline"),
+        pytest.param(EDF, [("T", 4, [ticks(1)], on())], {"T": 1}, id="EDF without a deadline"),
         *(
             pytest.param(
                 policy,

@@ -75,3 +75,14 @@ def test_who_waits_for_a_spinlock_of_another_core_is_not_kept_waiting_by_priorit
     found = analyze_system(two_cores(*users, semaphores=(lock,)))
     assert {each.reason for each in found.processes} == {"it shares the spinlock 'lock' with other cores or servers"}
     assert not any("never runs" in finding.message for finding in found.findings)
+
+
+def test_a_stimulus_without_a_process_is_named_where_a_process_has_none():
+    reason = "it has no stimulus, and the stimulus {}"
+    for fired, ending in (
+        ((), "'other' activates no process"),
+        (("second",), "'second', which is triggered, activates no process"),
+    ):
+        body = (ticks(1), *(Trigger(stimulus=name) for name in fired))
+        built = two_cores(Proc("T", body, 100, priority=1), Proc("Idle", (ticks(2),), priority=2), triggers=("other", "second"))
+        assert analyze_system(built).processes["Idle"].reason == reason.format(ending)

@@ -1,9 +1,9 @@
-"""Tasks without priorities: bounds that hold for any order, compared with all orders one by one.
+"""Tasks without priorities or deadlines: bounds that hold for any order, compared with all orders one by one.
 
 All tasks run at 1 MHz, so that a tick takes 1 us.
 """
 
-from itertools import permutations
+from itertools import permutations, product
 
 import pytest
 from effort import examples
@@ -14,8 +14,9 @@ from support import SHARED
 from unit_player import UnitTask, longest_responses
 
 import amalthea_uros as amuros
+from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.os import Policy
+from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
@@ -23,7 +24,7 @@ from amalthea_uros.units import MICROSECOND as US
 NO_PRIORITY = SHARED / "vectors" / "verdicts" / "no-priority.amxmi"
 
 
-def analysed(tasks, priorities, offsets=None):
+def analysed(tasks, priorities, offsets=None, policy=Policy.OSEK):
     """Tasks of (period, demand, whether they can be preempted), by the names T0, T1 and so on."""
     names = [f"T{index}" for index in range(len(tasks))]
     offsets = offsets or [0] * len(tasks)
@@ -38,7 +39,7 @@ def analysed(tasks, priorities, offsets=None):
         )
         for name, (period, demand, is_preemptive), priority, offset in zip(names, tasks, priorities, offsets, strict=True)
     ]
-    return analyze_system(system(*tasks))
+    return analyze_system(system(*tasks, schedulers=[Scheduler(name="s0", policy=policy, cores=("c0",))]))
 
 
 def worst(analysis):
@@ -84,6 +85,14 @@ def test_nothing_is_simulated_in_an_order_that_is_not_stated():
     ]
 
 
+@pytest.mark.parametrize("policy", [Policy.EARLIEST_DEADLINE_FIRST, Policy.DEADLINE_MONOTONIC])
+def test_deadlines_that_the_scheduler_does_not_know_leave_the_order_open(policy):
+    # 6 us of 8 us, and 3 us of 20 us, as above.
+    first, second = analysed([(8, 6, True), (20, 3, True)], [None, None], policy=policy).processes
+    assert (first.verdict, first.reason) == ("unknown", "it has no deadline; as the lowest it needs up to 9 us")
+    assert (second.verdict, second.response.worst) == ("met", 15 * US)
+
+
 @pytest.mark.parametrize("policy", [Policy.EARLIEST_DEADLINE_FIRST])
 def test_a_policy_without_priorities_needs_none(policy):
     pairs = amuros.taskset([(5, 1), (10, 1)], unit="ms", policy="EDF")
@@ -108,10 +117,33 @@ def test_no_order_exceeds_the_bound(tasks, data):
             assert bound is None or found.response.claim is not Claim.EXACT or found.response.worst <= bound
 
 
-def played(tasks, priorities, offsets):
+@examples(10)
+@given(TASKS, st.data())
+def test_no_deadlines_exceed_the_bound(tasks, data):
+    offsets = [data.draw(st.integers(0, period - 1)) for period, _, _ in tasks]
+    bounds = worst(analysed(tasks, [None] * len(tasks), offsets, Policy.EARLIEST_DEADLINE_FIRST))
+    for deadlines in product([1, 4, 11], repeat=len(tasks)):
+        for found, bound in zip(played(tasks, [0] * len(tasks), offsets, deadlines), bounds, strict=True):
+            assert bound is None or found * US <= bound
+
+
+def played(tasks, priorities, offsets, deadlines=(0, 0, 0, 0)):
     """The longest response times of two hyperperiods; the highest priority is served first."""
     rows = [
-        UnitTask(period, demand, offset, rank=-priority, is_preemptive=is_preemptive)
-        for (period, demand, is_preemptive), priority, offset in zip(tasks, priorities, offsets, strict=True)
+        UnitTask(period, demand, offset, rank=-priority, is_preemptive=is_preemptive, deadline=deadline)
+        for (period, demand, is_preemptive), priority, offset, deadline in zip(
+            tasks, priorities, offsets, deadlines, strict=False
+        )
     ]
     return longest_responses(rows, 2 * 120 + max(offsets))
+
+
+def test_priorities_are_proposed_where_there_are_none():
+    # Only the first one as the highest meets both: 6 us of 8 us, and then 15 us of 20 us.
+    (found,) = propose_priorities(analysed([(8, 6, True), (20, 3, True)], [None, None]))
+    assert (found.outcome, found.priorities) == ("proposed", {"T0": 2, "T1": 1})
+
+
+def test_priorities_do_not_help_where_deadlines_are_missing():
+    (found,) = propose_priorities(analysed([(8, 6, True), (20, 3, True)], [None, None], policy=Policy.EARLIEST_DEADLINE_FIRST))
+    assert (found.outcome, found.reason) == ("excluded", "'T0': it has no deadline")

@@ -37,7 +37,7 @@ def written(result, name):
 def test_records_have_the_names_and_values_of_the_json_output(analysis):
     content = json.loads(written(amuros.analyze_files(YAML, PHASE), "json"))
     for record, process in zip(analysis.to_records(full=True), content["processes"], strict=True):
-        plain = {key: value for key, value in process.items() if not isinstance(value, dict)}
+        plain = {key: value for key, value in process.items() if not isinstance(value, dict | list)}
         assert record.items() >= plain.items()
         assert record["terms.own_ps"] == process["terms"]["own_ps"]
         assert record["metrics.response_time.max_ps"] == process["metrics"]["response_time"]["max_ps"]

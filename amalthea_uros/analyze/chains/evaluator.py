@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 
 import numpy as np
@@ -24,6 +24,7 @@ from amalthea_uros.timing.dataflow.events import UnraisedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_paths
 from amalthea_uros.timing.dataflow.stages import Stage, common_communication, stages
+from amalthea_uros.timing.dataflow.untyped_events import ASSUMPTION, is_untyped
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.timing.scheduling.allocation import controller_of_core
 
@@ -60,7 +61,7 @@ class ChainEvaluator:
     def _chain(self, chain: EventChain) -> ChainResult:
         try:
             unfolded, left_out = unfold(chain, self.context.system)
-            paths = routes_of_paths(unfolded, self.context.dataflow)
+            paths = routes_of_paths(unfolded, self.context.dataflow, with_readings=True)
         except UnknownError as error:
             self._note_unknown(chain, error)
             return ChainResult(name=chain.name, communication="", reason=str(error))
@@ -84,6 +85,10 @@ class ChainEvaluator:
         if self.budget.is_exceeded:
             self.context.notes.assume(f"{TOO_MANY_JOBS}; the chains without them have bounds of other methods")
         all_values = _combine(unfolded, values)
+        if any(is_untyped(self.context.system.events_by_name[name]) for path in paths for name in path):
+            self.context.notes.assume(ASSUMPTION)
+            all_values = [replace(each, claim=Claim.BOUND) for each in all_values if each.quantity.is_upper]
+            why = "bounds: events of the chain have no type"
         tightest = _tightest(all_values)
         has_bound = any(value.quantity is LatencyQuantity.MAX_REDUCED_REACTION_TIME for value in tightest)
         reason = reason or ("" if has_bound else why_unbounded)
@@ -118,7 +123,8 @@ class ChainEvaluator:
     def routes(self, chain: EventChain) -> list[Route]:
         """The routes of all paths through a chain; nothing if it cannot be evaluated."""
         try:
-            paths = routes_of_paths(unfold(chain, self.context.system)[0], self.context.dataflow)
+            unfolded = unfold(chain, self.context.system)[0]
+            paths = routes_of_paths(unfolded, self.context.dataflow, with_readings=True)
         except UnknownError:
             return []
         return [route for found in paths.values() for route in found]

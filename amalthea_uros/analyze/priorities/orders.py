@@ -201,8 +201,10 @@ class PriorityOrders:
             return ""
         if self.analysis.processes[name].deadline is None:
             return f"{name!r} has no deadline"
-        if item.equal_priority is EqualPriority.UNKNOWN:
-            return f"{name!r} {'has no priority' if item.priority is None else 'shares its scheduler with a task that has no priority'}"
+        if item.order_gap is not None and item.order_gap.is_of_priority and item.server is None and item.rank == (0, 0):
+            return ""
+        if item.order_gap is not None:
+            return f"{name!r}: {item.order_gap}"
         if item.server is not None or item.equal_priority is not EqualPriority.FIFO or item.rank != (0, item.priority):
             return f"{name!r} is not scheduled by a single fixed priority"
         return ""

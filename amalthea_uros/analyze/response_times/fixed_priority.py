@@ -35,7 +35,10 @@ METHOD = "busy window, fixed priorities, preemptive"
 SOURCE = "Lehoczky 1990; Tindell, Burns, Wellings 1994"
 ANY_ORDER = "busy window, any order of priorities"
 BUSY_PERIOD = "longest busy period, of jobs that exclude each other the longest"
-ASSUMPTION = "where tasks of a scheduler have no priority, the response times of all its tasks hold for any order of priorities"
+ASSUMPTION = (
+    "where tasks of a scheduler have no priority, or no deadline that it knows, the response times of all its tasks hold for any "
+    "order of priorities"
+)
 #: Busy windows with more jobs are considered unbounded: the load is then so close to 1 that a bound would be useless.
 MAX_JOBS = 20_000
 #: The limit for irregular activations: each job takes longer to compute, and long windows increase the jitter of triggered tasks.
@@ -102,7 +105,8 @@ def in_any_order(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Int
     """The response time of a task among others, where the order of their priorities is not stated.
 
     A core that is never idle while a job is pending executes in a busy period only what is activated in it. So the busy window of
-    the task as the lowest one holds for each order of priorities, also if tasks share one or keep each other off. As the highest
+    the task as the lowest one holds for each order of priorities, also if tasks share one or keep each other off, and if the order
+    changes from job to job, as with deadlines: it counts only on the jobs of one task being served in their order. As the highest
     one, the task needs its own execution time only.
     """
     found, _ = response_time(task, Interference.of([*higher.tasks, *others], higher.supply), blocking)

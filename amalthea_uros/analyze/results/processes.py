@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros._internal.shown import Shown
+from amalthea_uros.analyze.results.needs import ExecutionOnCores
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
 from amalthea_uros.judge.margins import margin_of
@@ -83,6 +84,8 @@ class ProcessResult(Shown):
     reason : why something is unknown, or what is wrong
     min_interarrival, max_interarrival : time from one activation to the next; None if it is unknown
     metrics : from the schedule if it is known, otherwise bounds; metrics without any bound are absent
+    share : of its core in the worst case, in the long run, 1 is full; None if its demand or its activations are unknown
+    needs : what it needs on each kind of core, if it has no execution time because no single core with a known clock is stated
     """
 
     name: str
@@ -103,6 +106,8 @@ class ProcessResult(Shown):
     min_interarrival: Time | None = None
     max_interarrival: Time | None = None
     metrics: Mapping[JobMetric, Metric] = field(default_factory=dict)
+    share: Fraction | None = None
+    needs: tuple[ExecutionOnCores, ...] = ()
 
     def __repr__(self) -> str:
         worst = "unknown" if self.response is None else bound_text(self.response.worst)

@@ -6,8 +6,19 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from amalthea_uros.design.changes.key import ISRS, STIMULI, TASKS, UNSET, Configuration, Key, duration, positive_duration
+from amalthea_uros.design.changes.key import (
+    ISRS,
+    STIMULI,
+    TASKS,
+    UNSET,
+    Collection,
+    Configuration,
+    Key,
+    duration,
+    positive_duration,
+)
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import require
 from amalthea_uros.perf.distributions import Constant, Distribution, Uniform, highest
 from amalthea_uros.perf.events import StimulusEvent
 from amalthea_uros.perf.software import Process, Task
@@ -117,7 +128,22 @@ def _with_process_value(system: System, name: str, field: str, value: Any) -> Sy
         raise InvalidArgumentError(f"the stimulus {message} for all of them")
     own = replace(stimulus, name=_unused_name(f"{stimulus.name} of {name}", system), **fields)
     renamed = tuple(own.name if each == stimulus.name else each for each in process.stimuli)
-    return place.with_fields(STIMULI.with_item(system, own), name, stimuli=renamed)
+    return _place(process).with_fields(STIMULI.with_item(system, own), name, stimuli=renamed)
+
+
+def _place(process: Process) -> Collection:
+    return TASKS if isinstance(process, Task) else ISRS
+
+
+def _show_stimulus(configuration: Configuration, name: str) -> str:
+    return ", ".join(configuration.system.processes[name].stimuli) or UNSET
+
+
+def _set_stimulus(configuration: Configuration, name: str, stimulus: str) -> Configuration:
+    """Let a stimulus of the system activate a process, in place of those that do."""
+    system = configuration.system
+    require("stimulus", [stimulus], system.stimuli_by_name)
+    return configuration._replace(system=_place(system.processes[name]).with_fields(system, name, stimuli=(stimulus,)))
 
 
 def _unused_name(name: str, system: System) -> str:
@@ -128,7 +154,10 @@ def _unused_name(name: str, system: System) -> str:
 
 #: The keys of stimuli, and of processes.
 STIMULUS_KEYS = {field: _stimulus_key(field, *functions) for field, functions in _FIELDS.items()}
-PROCESS_KEYS = {field: _process_key(field, *functions) for field, functions in _FIELDS.items()}
+PROCESS_KEYS: dict[str, Key[Any]] = {
+    **{field: _process_key(field, *functions) for field, functions in _FIELDS.items()},
+    "stimulus": Key(str, _show_stimulus, _set_stimulus),
+}
 
 
 def _show_phase(configuration: Configuration, source: str) -> str:

@@ -24,7 +24,7 @@ from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Parameter, Parent, Scheduler
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores, standard_policy
-from amalthea_uros.timing.scheduling.ranks import CAPACITY, PERIOD
+from amalthea_uros.timing.scheduling.ranks import ANALYSED, CAPACITY, PERIOD
 from amalthea_uros.units import Duration, Time, time_text
 
 
@@ -199,7 +199,24 @@ def _parameters(scheduler: Scheduler) -> tuple[Parameter, ...]:
     return (*scheduler.parameters, *(scheduler.parent.parameters if scheduler.parent else ()))
 
 
-SCHEDULER_KEYS = {
+def _policy(text: str) -> str:
+    """The standard name of a policy for which there is an analysis."""
+    policy = standard_policy(text)
+    if policy not in (known := (*ANALYSED, *SERVERS)):
+        raise InvalidArgumentError(f"{text!r} is not a policy that can be analysed; expected one of {', '.join(known)}")
+    return policy
+
+
+def _show_policy(configuration: Configuration, name: str) -> str:
+    return configuration.system.schedulers[name].policy or UNSET
+
+
+def _set_policy(configuration: Configuration, name: str, policy: str) -> Configuration:
+    return _with_scheduler(configuration, replace(configuration.system.schedulers[name], policy=policy))
+
+
+SCHEDULER_KEYS: dict[str, Key[Any]] = {
+    "policy": Key(_policy, _show_policy, _set_policy),
     "priority": _parent_key("priority", whole_number, str),
     "deadline": _parent_key("deadline", duration, time_text),
     "capacity": _parameter_key("capacity", CAPACITY),

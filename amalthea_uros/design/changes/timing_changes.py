@@ -42,6 +42,10 @@ class TimingChange:
 _COUNTED = ("task", "ISR", "runnable", "core", "scheduler")
 
 
+#: Keys of names, which say nothing about timing: the values of the objects that have them are compared.
+_NAMES = ("stimulus",)
+
+
 def timing_changes(old: System, new: System) -> tuple[TimingChange, ...]:
     """The differences, by kind and in the order of the new system; what was removed is last of its kind."""
     return tuple(_changes(Configuration(old, Settings()), Configuration(new, Settings())))
@@ -90,6 +94,8 @@ def _of_kind(kind: ChangeableKind, old: Configuration, new: Configuration) -> It
 
 def _differences(kind: ChangeableKind, name: str, old: Configuration | None, new: Configuration | None) -> Iterator[Difference]:
     for key, found in kind.keys.items():
+        if key in _NAMES:
+            continue
         before, after = (UNSET if side is None else found.show(side, name) for side in (old, new))
         if before != after:
             yield Difference(name, key, before, after)

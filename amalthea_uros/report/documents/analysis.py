@@ -30,6 +30,8 @@ from amalthea_uros.report.basics.document import (
     table,
 )
 from amalthea_uros.report.documents.missing_values import missing_section
+from amalthea_uros.report.documents.needs import NEEDS_HEADING, needs_table
+from amalthea_uros.report.documents.overloads import overload_sections
 from amalthea_uros.report.wording.cells import (
     UNKNOWN,
     about,
@@ -64,7 +66,9 @@ def analysis_document(result: AnalysisResult) -> Document:
         (
             *_message_chains(analysis),
             section("Load", _loads(analysis)),
+            *overload_sections(analysis),
             section("Response times", response_times(analysis)),
+            section(NEEDS_HEADING, execution_times(analysis)),
             section(_CALLBACKS, callbacks(analysis.of_periodic_executors)),
             *map(_executor, analysis.executors),
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),
@@ -203,6 +207,11 @@ def _remarks(process: ProcessResult, is_detailed: bool) -> tuple[str, ...]:
     from amalthea_uros.report.documents.judged import why
 
     return (str(response.claim) if response is not None and response.worst is not None else "", why(process))
+
+
+def execution_times(analysis: Analysis) -> Table:
+    """The execution times of processes on each kind of core, where no single one is stated."""
+    return needs_table(analysis.processes)
 
 
 def callbacks(results: Iterable[CallbackResult]) -> Table:

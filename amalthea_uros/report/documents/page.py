@@ -27,6 +27,7 @@ from amalthea_uros.report.basics.document import (
 )
 from amalthea_uros.report.documents.analysis import (
     callbacks,
+    execution_times,
     handles,
     impact_section,
     latencies_of_messages,
@@ -188,7 +189,7 @@ def _response_times_section(content: ReportContent) -> Section | None:
     blocks: list[Block] = [Figure("responses", draw_responses(analysis, simulation))]
     blocks.append(response_times(analysis, is_detailed=True))
     blocks += [Folded(f"What delays {each.process.name}", [interference(each)]) for each in _tightest(content)]
-    blocks += filter(None, [callbacks(analysis.of_periodic_executors)])
+    blocks += filter(None, [execution_times(analysis), callbacks(analysis.of_periodic_executors)])
     lead = "From the activation of a task to its end: the worst case is the sum of its own execution and of what delays it."
     return Section("response-times", "Response times", lead, blocks)
 

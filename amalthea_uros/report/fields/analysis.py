@@ -7,6 +7,7 @@ from typing import Any
 from amalthea_uros.analyze.priorities.assignment import Proposal
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
+from amalthea_uros.analyze.results.needs import ExecutionOnCores
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.design.missing_values import MissingValues
@@ -95,6 +96,7 @@ declare(
     "name",
     ("kind", lambda process: "isr" if process.is_isr else "task"),
     *("processor", "priority", "preemption", "bcet_ps", "acet_ps", "wcet_ps"),
+    ("utilisation", "share"),
     _BCRT,
     _WCRT,
     "deadline_ps",
@@ -103,6 +105,16 @@ declare(
     *_METHOD,
     ("terms", _terms),
     *_METRICS,
+    "needs",
+)
+declare(
+    ExecutionOnCores,
+    *("core_type", "cores"),
+    ("clock_hz", "frequency"),
+    *("bcet_ps", "acet_ps", "wcet_ps", "least_ticks", "mean_ticks", "most_ticks"),
+    ("utilisation", "load"),
+    ("least_clock_hz", "least_frequency"),
+    "reason",
 )
 declare(CallbackResult, "name", "process", _BCRT, _WCRT, "deadline_ps", "reason", *_METHOD, *_METRICS)
 declare(Metric, "min_ps", ("avg_ps", "mean"), "max_ps", "claim")

@@ -24,7 +24,7 @@ from amalthea_uros.perf.stimuli import (
 )
 from amalthea_uros.report.basics.document import Badge, Tone
 from amalthea_uros.timing.response import Response
-from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
+from amalthea_uros.units import Frequency, Rounding, Time, frequency_text, number_text, rounded, rounded_time_text, time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.observations import MetricObservation
@@ -95,6 +95,12 @@ def priority_text(priority: int | None, is_isr: bool) -> str:
 def load_text(load: Fraction, rounding: Rounding = Rounding.NEAREST) -> str:
     """A load in percent with four significant digits; bounds are rounded so that they remain bounds."""
     return f"{number_text(rounded(load * 100, rounding, 100))} %"
+
+
+def clock_text(least: Frequency) -> str:
+    """The clock that something needs at least, rounded up to four significant digits."""
+    size = 10 ** max(0, len(str(int(least))) - 4)
+    return frequency_text(rounded(least / size, Rounding.UP) * size)
 
 
 def share_text(share: Fraction | float | None) -> str:

@@ -70,10 +70,8 @@ class Dispatching:
             raise UnknownError(self.context.reasons.get(name, "it is not allocated to a scheduler"))
         else:
             found = self._on_several_cores(allocation)
-        if found.scheduled.equal_priority is EqualPriority.UNKNOWN:
-            raise UnknownError(
-                "it has no priority" if found.scheduled.priority is None else "a task of its scheduler has no priority"
-            )
+        if found.scheduled.order_gap is not None:
+            raise UnknownError(found.scheduled.order_gap)
         server = self.servers.get(found.scheduled.server or "")
         while server is not None:
             _check_server(server)

@@ -144,7 +144,7 @@ class Activations:
         """Why a process has no stimulus."""
         transmission = self.system.transmissions.get(process.name)
         if transmission is None or transmission.purpose is not Purpose.DATA or transmission.agent.most is not None:
-            return "it has no stimulus"
+            return f"it has no stimulus{_spare_stimulus(self.dataflow)}"
         agent = self.system.network.agent
         return f"how much later {agent!r} sends one message than another is not stated: 'middleware.agent.to_controller'"
 
@@ -353,3 +353,15 @@ def triggered_together(activations: Activations) -> list[TriggeredTogether]:
             numbers = [cause.position.number for cause in causes]
             found.setdefault(min(triggering), {})[process.name] = numbers
     return [TriggeredTogether(cause, numbers) for cause, numbers in found.items() if len(numbers) > 1]
+
+
+def _spare_stimulus(dataflow: Dataflow) -> str:
+    """The stimulus that a process without one may have been meant to have, for a reason; "" if each one activates something."""
+    system = dataflow.system
+    unused = [each.name for each in system.stimuli.stimuli if each.name not in dataflow.activated]
+    with suppress(UnknownError):
+        fired = {firing.stimulus for process in system.processes for firing in dataflow.firings(process)}
+        unused.sort(key=lambda name: name not in fired)
+        if unused and unused[0] in fired:
+            return f", and the stimulus {unused[0]!r}, which is triggered, activates no process"
+    return f", and the stimulus {unused[0]!r} activates no process" if unused else ""

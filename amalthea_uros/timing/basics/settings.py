@@ -31,6 +31,8 @@ class Settings:
     factors : the same for single processes
     modes : values of mode labels that do not change
     communication : of all label accesses; None: as modelled, implicit by default
+    quantile : probability beyond which values of execution times without bounds are taken as impossible, on each side; None: they
+        remain unbounded
     phases : times at which what comes from outside, such as messages, is first taken; other phases are as modelled
     """
 
@@ -42,6 +44,7 @@ class Settings:
     memory: MemoryModel = MemoryModel.NONE
     communication: Communication | None = None
     phases: Mapping[str, Time] = field(default_factory=dict)
+    quantile: Fraction | None = None
 
     def __post_init__(self) -> None:
         for name, kind in (("memory", MemoryModel), ("communication", Communication)):
@@ -52,6 +55,8 @@ class Settings:
         for what, number in [("scale", self.scale), *self.frequencies.items()]:
             if number <= 0:
                 raise ValueError(f"{what}: {number} is not positive")
+        if self.quantile is not None and not 0 < self.quantile < Fraction(1, 2):
+            raise ValueError(f"quantile: {self.quantile} is not between 0 and 0.5")
         at_least_0: list[tuple[str, Fraction | int]] = [("growth", self.growth), *self.factors.items(), *self.phases.items()]
         for what, value in at_least_0:
             if value < 0:

@@ -18,6 +18,7 @@ from amalthea_uros.perf.events import Event, EventChain
 from amalthea_uros.timing.dataflow.chains import MAX_ROUTES, Unfolded, sequences, unfold
 from amalthea_uros.timing.dataflow.events import EventOccurrence
 from amalthea_uros.timing.dataflow.links import GAPS, UNTIMED, Dataflow, Link, LinkKind
+from amalthea_uros.timing.dataflow.untyped_events import readings
 
 #: More combinations of occurrences of the events of one sequence are not tried.
 MAX_CANDIDATES = 10_000
@@ -81,8 +82,14 @@ def routes(events: Sequence[Event], dataflow: Dataflow) -> list[Route]:
     return found
 
 
-def routes_of_paths(unfolded: Unfolded, dataflow: Dataflow) -> dict[tuple[str, ...], list[Route]]:
+def routes_of_paths(
+    unfolded: Unfolded, dataflow: Dataflow, *, with_readings: bool = False
+) -> dict[tuple[str, ...], list[Route]]:
     """The possible routes of all paths through a chain, by their events.
+
+    Parameters
+    ----------
+    with_readings : also of events without a type, for each type that they may have
 
     Raises
     ------
@@ -93,7 +100,9 @@ def routes_of_paths(unfolded: Unfolded, dataflow: Dataflow) -> dict[tuple[str, .
     gaps: list[tuple[str, str]] = []
     for path in sequences(unfolded):
         try:
-            found[path] = routes([events[name] for name in path], dataflow)
+            of_path = [events[name] for name in path]
+            read = readings(of_path) if with_readings else [of_path]
+            found[path] = [route for each in read for route in routes(each, dataflow)]
         except UnlinkedError as error:
             gaps += error.gaps
     if gaps:

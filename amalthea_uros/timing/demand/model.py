@@ -354,7 +354,7 @@ class DemandModel:
         tick = self.time_of_tick(factor, core)
         worst, best = highest(ticks), lowest(ticks)
         if worst is None or best is None:
-            raise UnknownError("a distribution of ticks has no bounds")
+            raise UnknownError("a distribution of ticks has no bounds; --quantile states how unlikely values are left out")
         # What an invalid value stands for is unknown.
         if best < 0:
             raise UnknownError("a number of ticks is negative")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import takewhile
 
 from amalthea_uros.perf.hardware import StructureKind
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.os import Policy, Scheduler
+from amalthea_uros.perf.os import Parent, Policy, Scheduler
 from amalthea_uros.perf.system import System
+from amalthea_uros.units import Time
 
 #: Policies that serve the highest priority first, as far as there is an analysis for them.
 BY_PRIORITY = {Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN}
@@ -61,10 +62,21 @@ def deciding_scheduler(scheduler: str, system: System) -> Scheduler | None:
 
 def effective_priority(allocation: TaskAllocation, system: System) -> int | None:
     """The priority of a task, or of its group; None if there is none."""
-    if allocation.priority is not None:
-        return allocation.priority
+    return _effective(allocation, system, lambda stated: stated.priority)
+
+
+def effective_deadline(allocation: TaskAllocation, system: System) -> Time | None:
+    """The deadline that the allocation of a task states, or that of its group; None if there is none."""
+    return _effective(allocation, system, lambda stated: stated.deadline)
+
+
+def _effective(
+    allocation: TaskAllocation, system: System, value: Callable[[TaskAllocation | Parent], int | None]
+) -> int | None:
+    """A parameter of a task, or of the nearest group that has it."""
     groups = takewhile(lambda each: each.policy == Policy.GROUPING, upwards(allocation.scheduler, system))
-    return next((each.parent.priority for each in groups if each.parent and each.parent.priority is not None), None)
+    stated: list[TaskAllocation | Parent] = [allocation, *(each.parent for each in groups if each.parent is not None)]
+    return next((number for each in stated if (number := value(each)) is not None), None)
 
 
 def operating_system_of(system: System) -> Mapping[str, str]:

@@ -19,8 +19,14 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.notes import AnalysisNotes
-from amalthea_uros.timing.scheduling.allocation import BY_PRIORITY, deciding_scheduler, effective_priority, standard_policy
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, SchedulingContext, Server
+from amalthea_uros.timing.scheduling.allocation import (
+    BY_PRIORITY,
+    deciding_scheduler,
+    effective_deadline,
+    effective_priority,
+    standard_policy,
+)
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, OrderGap, ScheduledProcess, SchedulingContext, Server
 from amalthea_uros.units import Duration, Time
 
 #: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
@@ -77,7 +83,7 @@ class SchedulingOrder:
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
     _served: Counter[str] = field(init=False, default_factory=Counter)
-    _without_priority: dict[str, str] | None = field(init=False, default=None)
+    _lacking: frozenset[str] | None = field(init=False, default=None)
     _roots_of: defaultdict[str, list[str]] = field(init=False, default_factory=partial(defaultdict, list))
 
     def task(self, allocation: TaskAllocation) -> ScheduledProcess:
@@ -110,6 +116,7 @@ class SchedulingOrder:
             equal_priority=found.equal_priority,
             slice=found.slice,
             group=found.group,
+            order_gap=found.order_gap,
         )
 
     def _period(self, process: Process) -> Time | None:
@@ -135,7 +142,8 @@ class SchedulingOrder:
             message = f"the scheduler {scheduler.name!r} has no policy, so its tasks are not analysed"
             self.notes.warning("ANA001", message, scheduler)
             raise UnknownError(f"its scheduler {scheduler.name!r} has no policy")
-        if policy in _NEEDING_PRIORITY and parameters.priority is None and self._serves_one(scheduler):
+        needed = _NEEDED.get(policy)
+        if needed == _PRIORITY and parameters.priority is None and self._serves_one(scheduler):
             # Nothing competes with what is alone.
             parameters = replace(parameters, priority=0)
         by_policy = _BY_POLICY.get(policy)
@@ -143,8 +151,10 @@ class SchedulingOrder:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
             raise UnknownError(f"there is no analysis for the policy {policy} of its scheduler {scheduler.name!r}")
-        if policy in _NEEDING_PRIORITY and self._lacks_priorities(scheduler):
-            return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.UNKNOWN)
+        if needed == _DEADLINE and not parameters.deadline and self._serves_one(scheduler):
+            return replace(base, rank=(*base.rank, 0))
+        if gap := self._order_gap(scheduler, parameters):
+            return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.UNKNOWN, order_gap=gap)
         if policy == Policy.OSEK and parameters.of(scheduler, _GROUP) == _NO_GROUP:
             self.notes.assume(f"task group {_NO_GROUP} of OSEK schedulers means that a task is in no group")
         return by_policy(scheduler, parameters, base)
@@ -152,25 +162,33 @@ class SchedulingOrder:
     def _in_server(self, scheduler: Scheduler, parameters: _Parameters, above: tuple[str, ...]) -> SchedulingContext:
         """The scheduling of a task or scheduler in the budget of a server, by priority."""
         server = self._server(scheduler, above)
-        if self._lacks_priorities(scheduler):
-            return SchedulingContext(server=server.name, rank=(0,), equal_priority=EqualPriority.UNKNOWN)
+        if gap := self._order_gap(scheduler, parameters):
+            return SchedulingContext(server=server.name, rank=(0,), equal_priority=EqualPriority.UNKNOWN, order_gap=gap)
         if parameters.priority is None and self._serves_one(scheduler):
             return SchedulingContext(server=server.name, rank=())
         return SchedulingContext(server=server.name, rank=(parameters.required(parameters.priority, "priority"),))
 
-    def _lacks_priorities(self, scheduler: Scheduler) -> bool:
-        """Whether a scheduler decides for tasks only, and some of them have no priority: then it may serve them in any order."""
-        return self.without_priority(scheduler.name) != "" and not self._serves_one(scheduler) and self._serves_tasks(scheduler)
+    def _order_gap(self, scheduler: Scheduler, parameters: _Parameters) -> OrderGap | None:
+        """Why a scheduler that decides for tasks only may serve them in any order; None if it has all that its policy needs."""
+        if scheduler.name not in self._incomplete() or self._serves_one(scheduler) or not self._serves_tasks(scheduler):
+            return None
+        if _NEEDED[standard_policy(scheduler.policy) or ""] == _DEADLINE:
+            return OrderGap.OTHER_WITHOUT_DEADLINE if parameters.deadline else OrderGap.NO_DEADLINE
+        return OrderGap.NO_PRIORITY if parameters.priority is None else OrderGap.OTHER_WITHOUT_PRIORITY
 
-    def without_priority(self, scheduler: str) -> str:
-        """A task without a priority for which a scheduler decides; "" if there is none."""
-        if self._without_priority is None:
-            self._without_priority = {}
-            for task in self.system.mapping.tasks:
-                deciding = deciding_scheduler(task.scheduler, self.system)
-                if deciding is not None and effective_priority(task, self.system) is None:
-                    self._without_priority.setdefault(deciding.name, task.task)
-        return self._without_priority.get(scheduler, "")
+    def _incomplete(self) -> frozenset[str]:
+        """The schedulers that decide for a task without the priority or the deadline that their policy needs."""
+        if self._lacking is None:
+            pairs = ((deciding_scheduler(task.scheduler, self.system), task) for task in self.system.mapping.tasks)
+            self._lacking = frozenset(each.name for each, task in pairs if each is not None and self._lacks(task, each))
+        return self._lacking
+
+    def _lacks(self, task: TaskAllocation, scheduler: Scheduler) -> bool:
+        """Whether a task has no priority, or no deadline, and the policy of its scheduler needs it."""
+        needed = _NEEDED.get(standard_policy(scheduler.policy) or "")
+        if needed == _DEADLINE:
+            return not effective_deadline(task, self.system)
+        return needed == _PRIORITY and effective_priority(task, self.system) is None
 
     def _serves_tasks(self, scheduler: Scheduler) -> bool:
         """Whether a scheduler decides for no other scheduler that decides something itself."""
@@ -357,8 +375,12 @@ def _earliest_deadline_first(_scheduler: Scheduler, parameters: _Parameters, bas
     return replace(base, equal_priority=EqualPriority.EDF, deadline=parameters.required(parameters.deadline, "deadline"))
 
 
-#: The policies for which what they serve needs a priority.
-_NEEDING_PRIORITY = (Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN)
+_PRIORITY, _DEADLINE = "priority", "deadline"
+#: The parameter by which policies order tasks: a deadline of the allocation, not one that is only required.
+_NEEDED: Mapping[str, str] = {
+    **dict.fromkeys((Policy.FIXED_PRIORITY_PREEMPTIVE, Policy.OSEK, Policy.PRIORITY_BASED_ROUND_ROBIN, *SERVERS), _PRIORITY),
+    **dict.fromkeys((Policy.EARLIEST_DEADLINE_FIRST, Policy.DEADLINE_MONOTONIC), _DEADLINE),
+}
 #: The scheduling by each policy.
 _BY_POLICY: Mapping[str, Callable[[Scheduler, _Parameters, SchedulingContext], SchedulingContext]] = {
     Policy.FIXED_PRIORITY_PREEMPTIVE: _fixed_priority,
@@ -368,3 +390,5 @@ _BY_POLICY: Mapping[str, Callable[[Scheduler, _Parameters, SchedulingContext], S
     Policy.RATE_MONOTONIC: _rate_monotonic,
     Policy.EARLIEST_DEADLINE_FIRST: _earliest_deadline_first,
 }
+#: The policies that decide about tasks without a budget.
+ANALYSED = tuple(_BY_POLICY)

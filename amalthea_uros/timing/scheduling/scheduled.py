@@ -22,6 +22,20 @@ class EqualPriority(StrEnum):
     UNKNOWN = "an order that is not stated"
 
 
+class OrderGap(StrEnum):
+    """Why the order of service is not stated."""
+
+    NO_PRIORITY = "it has no priority"
+    OTHER_WITHOUT_PRIORITY = "a task of its scheduler has no priority"
+    NO_DEADLINE = "it has no deadline"
+    OTHER_WITHOUT_DEADLINE = "a task of its scheduler has no deadline"
+
+    @property
+    def is_of_priority(self) -> bool:
+        """Whether priorities would state it."""
+        return self in (OrderGap.NO_PRIORITY, OrderGap.OTHER_WITHOUT_PRIORITY)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchedulingContext:
     """How something is scheduled.
@@ -32,6 +46,7 @@ class SchedulingContext:
     rank : higher is served first
     equal_priority, slice : how tasks of the same rank share the core
     group : its members do not preempt each other
+    order_gap : why the order among those of the same rank is unknown; None if it is known
     """
 
     core: str = ""
@@ -41,6 +56,7 @@ class SchedulingContext:
     deadline: Time | None = None
     slice: Time = 0
     group: str | None = None
+    order_gap: OrderGap | None = None
 
     @property
     def urgency(self) -> Rank:

@@ -1,0 +1,93 @@
+"""Counts what the analysis can say about the models of a folder: `python benchmarks/answers.py FOLDER`.
+
+Of files with processes and runnables that execute something: how many processes have a bounded response time, how many at least an
+execution time, how many chains have a latency, and what the reasons for unknown response times are, with the files in which they occur.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from amalthea_uros import analyze_files
+from amalthea_uros.analyze.results.processes import ProcessResult
+from amalthea_uros.errors import ReadError
+
+
+@dataclass
+class Answers:
+    """What is known of the processes and chains of many files.
+
+    Attributes
+    ----------
+    complete, partial : files of which all, or some processes have a bounded response time
+    timed : processes with an execution time, on their core or on each kind of core
+    reasons, files_of : why response times are unknown: in how many processes and files; names in the texts are left out
+    """
+
+    files: int = 0
+    complete: int = 0
+    partial: int = 0
+    processes: int = 0
+    bounded: int = 0
+    timed: int = 0
+    chains: int = 0
+    with_latency: int = 0
+    reasons: Counter[str] = field(default_factory=Counter)
+    files_of: Counter[str] = field(default_factory=Counter)
+
+    def add(self, path: Path) -> None:
+        """Count a file, if its processes execute runnables."""
+        try:
+            result = analyze_files(path)
+        except ReadError:
+            return
+        processes, system = result.analysis.processes, result.system
+        if not processes or not any(runnable.activities for runnable in system.runnables.values()):
+            return
+        bounded = [each for each in processes if each.wcrt is not None]
+        self.files += 1
+        self.complete += len(bounded) == len(processes)
+        self.partial += 0 < len(bounded) < len(processes)
+        self.processes += len(processes)
+        self.bounded += len(bounded)
+        self.timed += sum(map(_is_timed, processes))
+        self.chains += len(result.analysis.chains)
+        self.with_latency += sum(bool(chain.values) for chain in result.analysis.chains)
+        reasons = Counter(_kind(each.reason) for each in processes if each.wcrt is None)
+        self.reasons += reasons
+        self.files_of.update(reasons.keys())
+
+
+def _is_timed(process: ProcessResult) -> bool:
+    return process.wcet is not None or any(need.worst is not None for need in process.needs)
+
+
+def _kind(reason: str) -> str:
+    """A reason without names and numbers."""
+    return re.sub(r"[\d.,]+ %", "... %", re.sub(r"'[^']*'", "'...'", reason))
+
+
+def count(paths: Iterable[Path]) -> Answers:
+    """What is known of some files."""
+    answers = Answers()
+    for path in paths:
+        answers.add(path)
+    return answers
+
+
+def lines(answers: Answers) -> Iterator[str]:
+    """The counts, and the reasons with the most processes first."""
+    yield f"{answers.files} files: {answers.complete} with all response times, {answers.partial} with some"
+    yield f"{answers.processes} processes: {answers.bounded} with a bounded response time, {answers.timed} with an execution time"
+    yield f"{answers.chains} chains: {answers.with_latency} with latencies"
+    for reason, number in answers.reasons.most_common():
+        yield f"{number:5} in {answers.files_of[reason]:3} files: {reason}"
+
+
+if __name__ == "__main__":
+    print(*lines(count(sorted(Path(sys.argv[1]).rglob("*.amxmi")))), sep="\n")
