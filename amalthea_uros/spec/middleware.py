@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from amalthea_uros.spec.executors import ExecutorSection, MessageCost
+from amalthea_uros.spec.executors import ExecutorSection, MessageCost, with_shared_loops
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.transports import Agent, TransportSection
 from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Priority, Size, described
@@ -238,4 +238,4 @@ class Middleware(DescriptionSection):
     @property
     def stated_executors(self) -> tuple[ExecutorSection, ...]:
         """The executors; the first one serves callbacks that name no other."""
-        return tuple(self.executors) or (self.executor,)
+        return with_shared_loops(tuple(self.executors) or (self.executor,))
