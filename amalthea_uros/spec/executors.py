@@ -114,11 +114,15 @@ class ExecutorSection(DescriptionSection):
 
 def with_shared_loops(executors: tuple[ExecutorSection, ...]) -> tuple[ExecutorSection, ...]:
     """Executors, of which those that spin in the loop of another one have a loop, too: with the timeout that is given there."""
-    shared = {
-        item.executor: (each.loop, item) for each in executors if each.loop is not None for item in each.loop.items or () if item.executor
-    }
     if not any(each.loop is not None and each.loop.items is not None for each in executors):
         return executors
+    shared = {
+        item.executor: (each, item)
+        for each in executors
+        if each.loop is not None
+        for item in each.loop.items or ()
+        if item.executor is not None and item.executor != each.name
+    }
     found = []
     for each in executors:
         if each.loop is not None and each.loop.items is not None and not each.inherits("loop"):
@@ -126,9 +130,11 @@ def with_shared_loops(executors: tuple[ExecutorSection, ...]) -> tuple[ExecutorS
             loop = each.loop.model_copy(update={"spin_some": None if own is None else own.spin_some})
             found.append(each.model_copy(update={"loop": loop}))
         elif each.name in shared:
-            loop, item = shared[each.name]
-            loop = loop.model_copy(update={"spin_some": item.spin_some, "items": None})
-            found.append(each.model_copy(update={"loop": loop}))
+            owner, item = shared[each.name]
+            loop = (owner.loop or LoopSection(spin_some=0)).model_copy(update={"spin_some": item.spin_some, "items": None})
+            # Its thread is that of the owner.
+            thread = {key: getattr(owner, key) for key in ("priority", "core", "overhead") if not each.states(key)}
+            found.append(each.model_copy(update={"loop": loop, **thread}))
         else:
             found.append(each)
     return tuple(found)

@@ -239,3 +239,10 @@ class Middleware(DescriptionSection):
     def stated_executors(self) -> tuple[ExecutorSection, ...]:
         """The executors; the first one serves callbacks that name no other."""
         return with_shared_loops(tuple(self.executors) or (self.executor,))
+
+    @property
+    def thread_count(self) -> int:
+        """The threads or tasks in which executors spin: several ones can spin in one loop."""
+        loops = [executor.loop for executor in self.stated_executors if executor.loop is not None]
+        spins = (item.executor for loop in loops for item in loop.items or ())
+        return len(self.stated_executors) - len({name for name in spins if name is not None})

@@ -240,6 +240,9 @@ class IterationCompiler:
     def _check(self) -> None:
         if self.executor.unknown:
             raise UnknownError(self.executor.unknown)
+        for other in thread_of(self.executor, self.body.context.system.executors):
+            if other.task not in self.body.resources.processes:
+                raise UnknownError(f"{other.name!r}, which spins in the same loop, is not simulated")
         for handle in self.executor.handles:
             self._check_arrivals(handle)
             for publication in handle.publications:
