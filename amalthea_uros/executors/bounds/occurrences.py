@@ -154,7 +154,9 @@ def _calls(
         late = min(2 * ready.period, 2 * ready.period if late is None else late)
     if ready is None or late is None:
         return SporadicEvents(distance) if distance else None
-    calls = type(ready)(ready.period, ready.jitter + late, distance if places.most == 1 else 0)
+    # A timer that loses periods calls less often than it expires.
+    kind = type(ready) if result.lost is None else SporadicEvents
+    calls = kind(ready.period, ready.jitter + late, distance if places.most == 1 else 0)
     return calls if places.most == 1 else Multiplied(calls, places.most)
 
 
