@@ -4,14 +4,25 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind, Thread
+from amalthea_uros.source.facts import (
+    CodeEntity,
+    CodeEntityKind,
+    CodeExecutor,
+    CodeFacts,
+    CodeHandle,
+    CodeLoopItem,
+    CodeLoopKind,
+    SpinKind,
+    Thread,
+)
 from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.names import CodeNames
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.source.platform import CUSTOM
+from amalthea_uros.units import SECOND, Time, time_text
 
 GAP = "TODO"
 _PLAIN = re.compile(r"[A-Za-z/][\w/.-]*", re.ASCII)
@@ -25,16 +36,17 @@ _LISTS = {
     CodeEntityKind.ACTION_SERVER: "action_servers",
     CodeEntityKind.ACTION_CLIENT: "action_clients",
 }
+_ON, _OFF = ("on", "1", "true"), ("off", "0", "false")
 _NOT_ARRIVING = (CodeEntityKind.TIMER, CodeEntityKind.GUARD_CONDITION)
 
 
-def description_text(facts: CodeFacts, name: str, board: str | None, options: Collection[str]) -> str:
+def description_text(facts: CodeFacts, name: str, board: str | None, options: Mapping[str, str]) -> str:
     """The description.
 
     Parameters
     ----------
     board : the name of a platform, if it is known
-    options : build options of the middleware that a description can have
+    options : build options of the middleware that a description can have, each with its unit: "B", "ms", "number", "switch", "word"
     """
     names = CodeNames(facts)
     lines = [
@@ -42,7 +54,7 @@ def description_text(facts: CodeFacts, name: str, board: str | None, options: Co
         "amuros: 1",
         f"name: {quoted(name)}",
         *_hardware(board),
-        *([f"os: {{rtos: {facts.rtos}}}"] if facts.rtos else []),
+        *_os(facts),
         "middleware:",
         *(f"  {line}" for line in _middleware(facts, names, options)),
         "application:",
@@ -77,7 +89,16 @@ def _hardware(board: str | None) -> Iterator[str]:
     yield f"  frequency: {GAP} # clock of the cores"
 
 
-def _middleware(facts: CodeFacts, names: CodeNames, options: Collection[str]) -> Iterator[str]:
+def _os(facts: CodeFacts) -> Iterator[str]:
+    if facts.rtos and facts.tick_rate is not None:
+        tick = Time(int(SECOND / facts.tick_rate))
+        default = "" if facts.ticks_are_stated else " # the default of the port, if its configuration says nothing else"
+        yield f"os: {{rtos: {facts.rtos}, tick: {time_text(tick)}}}{default}"
+    elif facts.rtos:
+        yield f"os: {{rtos: {facts.rtos}}}"
+
+
+def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) -> Iterator[str]:
     executors = list(facts.executors.values())
     if len(executors) == 1:
         yield "executor:"
@@ -92,10 +113,31 @@ def _middleware(facts: CodeFacts, names: CodeNames, options: Collection[str]) ->
     if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
         yield f"multithread: true{_at(option.place)}"
     yield from _transport(facts)
-    known = [option for name, option in facts.options.items() if name in options and option.value.isdecimal()]
-    if known:
+    limits = [*_built_transport(facts), *_limits(facts, options)]
+    if limits:
         yield "limits:"
-        yield from (f"  {option.name}: {option.value}{_at(option.place)}" for option in known)
+        yield from (f"  {line}" for line in limits)
+
+
+def _built_transport(facts: CodeFacts) -> Iterator[str]:
+    """The transport of the build, where the description would take that of the wire for it."""
+    is_udp = facts.transport is not None and facts.transport.key == "udp"
+    if is_udp and facts.port in CUSTOM and "RMW_UXRCE_TRANSPORT" not in facts.options:
+        yield f"RMW_UXRCE_TRANSPORT: custom # {facts.port} sends by functions of its own, whatever is behind them"
+
+
+def _limits(facts: CodeFacts, options: Mapping[str, str]) -> Iterator[str]:
+    """Build options as they are stated, as far as a description can have them."""
+    for name, option in facts.options.items():
+        value = option.value.lower()
+        match options.get(name):
+            case "switch" if value in (*_ON, *_OFF):
+                yield f"{name}: {str(value in _ON).lower()}{_at(option.place)}"
+            case "word" if value.isalpha():
+                yield f"{name}: {value}{_at(option.place)}"
+            case "number" | "B" | "ms" as unit if value.removeprefix("-").isdecimal():
+                text = value if unit == "number" or (unit == "ms" and value == "0") else f"{value} {unit}"
+                yield f"{name}: {text}{_at(option.place)}"
 
 
 def _transport(facts: CodeFacts) -> Iterator[str]:
@@ -113,9 +155,10 @@ def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Ite
     yield f"name: {quoted(names.executors[executor.key])}{_at(executor.place)}"
     if executor.max_handles:
         yield f"max_handles: {executor.max_handles}{_at(executor.place)}"
-    if executor.thread is not None:
+    if executor.thread is not None and not _is_of_other_loop(executor):
         yield from _thread(executor.thread)
-    yield from _loop(executor)
+    if not _is_of_other_loop(executor):
+        yield from _loop(executor, names)
     yield "callbacks: in-executor"
     order = [names.handles[handle.entity] for handle in executor.handles if handle.entity in names.handles]
     if len(order) > 1:
@@ -134,7 +177,12 @@ def _thread(thread: Thread) -> Iterator[str]:
         yield f"core: {GAP}{_at(thread.place, f'pinned to core {thread.core}')}"
 
 
-def _loop(executor: CodeExecutor) -> Iterator[str]:
+def _is_of_other_loop(executor: CodeExecutor) -> bool:
+    """Whether the description has its loop at another executor, the first one that spins in it."""
+    return bool(executor.spins) and executor.spins[0].executors[:1] not in ((), (executor.key,))
+
+
+def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
     if not executor.spins:
         yield f"loop: {GAP} # no call lets it spin"
         return
@@ -144,14 +192,28 @@ def _loop(executor: CodeExecutor) -> Iterator[str]:
         time = Time(10**12) if is_default else executor.timeout
         yield f"loop: {{spin: {_time(time)}}}{_at(spin.place, 'the default timeout' if is_default else '')}"
         return
+    if {item.kind for item in spin.items} - {CodeLoopKind.SPIN, CodeLoopKind.SLEEP} or len(spin.executors) > 1:
+        yield "loop:"
+        yield from (f"  - {_loop_item(item, executor, names)}" for item in spin.items)
+        return
     parts = [f"{spin.kind}: {_time(spin.time)}"]
     if spin.kind is SpinKind.SOME:
         sleep = spin.sleep if spin.is_in_loop else None
         parts += [f"sleep: {_time(sleep)}"] if sleep != 0 else []
     elif executor.timeout_place is not None:
         parts.append(f"timeout: {_time(executor.timeout)}")
-    others = ", ".join(f"sleep in line {place.line}" for place in spin.sleeps)
+    others = ", ".join(f"sleep in line {item.place.line}" for item in spin.items if item.kind is CodeLoopKind.SLEEP)
     yield f"loop: {{{', '.join(parts)}}}{_at(spin.place, others)}"
+
+
+def _loop_item(item: CodeLoopItem, owner: CodeExecutor, names: CodeNames) -> str:
+    comment = _at(item.place, item.note)
+    if item.kind is CodeLoopKind.PUBLISH:
+        topic = names.topics.get(item.of)
+        return f"{item.kind}: {GAP if topic is None else f'[{quoted(topic)}]'}{comment}"
+    if item.kind is CodeLoopKind.SPIN and item.of != owner.key:
+        return f"{{{item.kind}: {_time(item.time)}, executor: {quoted(names.executors[item.of])}}}{comment}"
+    return f"{item.kind}: {_time(item.time)}{comment}"
 
 
 def _trigger(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:

@@ -6,16 +6,16 @@ import re
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
+from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated
+from amalthea_uros.source.sleeps import SLEEPS, wait_of
 from amalthea_uros.source.syntax import descendants
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
 
-#: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent.
-_ROUND_TRIPS = ("rmw_uros_ping_agent", "rmw_uros_ping_agent_options", "rmw_uros_sync_session")
 _MILLISECOND = 10**9
 _SECOND = 10**12
 _WITH_HANDLES = (
@@ -48,8 +48,9 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
         yield from _waiting(executor)
         yield from _timers(executor, facts)
         yield from _triggers(executor)
+    yield from _sleepless(facts, walk)
     yield from _blocking(facts, walk)
-    yield from _pings(walk)
+    yield from _pings(facts, walk)
 
 
 def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
@@ -166,25 +167,42 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
         yield Finding("IMP014", Severity.WARNING, message, executor.trigger.place, advice)
 
 
-def _pings(walk: CodeWalk) -> Iterator[Finding]:
+def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    described = _in_loops(facts)
     for call in walk.calls:
-        if call.name in _ROUND_TRIPS and (call.loops or (call.root is not None and call.root.name == "loop")):
+        if call.name in ROUND_TRIPS and is_repeated(call) and call.place not in described:
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
             )
 
 
+def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    """Calls that seem to sleep, and do not."""
+    for call in walk.calls:
+        if call.name in SLEEPS and (wait := wait_of(call, facts)).note:
+            message = f"'{call.name}' does not sleep here: {wait.note}"
+            yield Finding("IMP020", Severity.WARNING, message, call.place, "Use a function and a time with which the thread sleeps.")
+
+
+def _in_loops(facts: CodeFacts) -> set[Location]:
+    """Where what the loops of the description have is."""
+    return {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
+
+
 def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     published = {place for places in facts.publishes.values() for place in places.values()}
-    told = set()
+    told, described = set(), _in_loops(facts)
     for call in walk.calls:
         given = call.argument(0)
         entity = facts.entities.get(given.key) if call.name == "rcl_publish" and given is not None else None
         if entity is None or call.place in told:
             continue
         told.add(call.place)
-        if call.place not in published:
+        if call.place in described:
+            message = f"'{entity.variable}' publishes in the loop, outside of callbacks: how long the loop takes is unknown"
+            yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
+        elif call.place not in published:
             message = f"'{entity.variable}' publishes outside of callbacks, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Describe it as a timer, or publish in a timer callback."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -173,6 +173,20 @@ class PoolSizes(DescriptionSection):
     """zenoh-pico: whether messages can be held back and sent together."""
     Z_FEATURE_FRAGMENTATION: bool | None = None
     """zenoh-pico: whether messages longer than a batch are sent in fragments."""
+
+
+def option_units() -> dict[str, str]:
+    """What the number of each build option counts: "B", "ms" or "number"; "switch" for a truth value, "word" for a choice."""
+    properties = PoolSizes.model_json_schema()["properties"]
+    return {key: _unit(properties[key]["anyOf"][0]) for key in PoolSizes.model_fields}
+
+
+def _unit(schema: dict[str, Any]) -> str:
+    if "enum" in schema:
+        return "word"
+    if "examples" in schema:
+        return "B" if schema["examples"] == ["4 B"] else "ms"
+    return "switch" if schema["type"] == "boolean" else "number"
 
 
 _POLICIES = described(
