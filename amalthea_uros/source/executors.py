@@ -80,13 +80,14 @@ def _add(facts: CodeFacts, call: FunctionCall, walk: CodeWalk) -> None:
         given = call.argument(position)
         callback = callback_of(given, walk) if given is not None else None
         callbacks += [callback] if callback is not None else []
-    last = call.argument(-1)
+    last, message = call.argument(-1), call.argument(2)
     handle = CodeHandle(
         kind=kind,
         entity=entity.key,
         callbacks=tuple(callbacks),
         place=call.place,
         count=_PARAMETER_SERVER_HANDLES if kind is CodeEntityKind.PARAMETER_SERVER else 1,
+        message=message.core.text if message is not None and kind is CodeEntityKind.SUBSCRIPTION else "",
         always=kind is CodeEntityKind.SUBSCRIPTION and last is not None and last.resolved.text == "ALWAYS",
     )
     if not any(each.entity == handle.entity and each.kind is kind for each in executor.handles):

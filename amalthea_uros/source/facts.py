@@ -82,6 +82,7 @@ class CodeHandle:
     callbacks : those that were given when it was added
     count : number of handles that it takes
     always : whether its callback is called without a message, too
+    message : of a subscription, the variable that its messages are written to, as the code calls it
     """
 
     kind: CodeEntityKind
@@ -90,6 +91,7 @@ class CodeHandle:
     place: Location
     count: int = 1
     always: bool = False
+    message: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

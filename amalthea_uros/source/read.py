@@ -12,6 +12,7 @@ from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thre
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws, not_understood
 from amalthea_uros.source.loops import SENDS, note_spins
+from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.platform import platform_of
 from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
@@ -45,7 +46,7 @@ def read_facts(sources: Sources) -> CodeFacts:
     facts.transport = transport_of(walk.calls, program)
     for file in sources.meta:
         facts.options |= _options(file)
-    facts.findings += [*not_understood(walk, facts), *flaws(facts, walk)]
+    facts.findings += [*not_understood(walk, facts), *flaws(facts, walk), *message_flaws(facts, program)]
     return facts
 
 
