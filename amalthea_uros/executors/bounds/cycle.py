@@ -49,6 +49,7 @@ from amalthea_uros.executors.semantics.readiness import (
     sharing,
     takes_one_message,
     thread_of,
+    why_unknown,
 )
 from amalthea_uros.executors.semantics.suspension import (
     NONE,
@@ -114,8 +115,11 @@ class Cycle:
 
         Raises
         ------
-        UnknownError : its execution demand, or what can preempt it, is unknown.
+        UnknownError : its execution demand, what can preempt it, or what else is done in the loop is unknown.
         """
+        reason = why_unknown(executor, solved.context.system.executors)
+        if reason:
+            raise UnknownError(reason)
         processor = solved.processor(executor.task)
         demand = IterationDemand.of(executor, solved.context)
         takes_one = takes_one_message(executor, solved.context.system.executors)

@@ -105,6 +105,14 @@ def others_of_thread(executor: Executor, executors: Sequence[Executor]) -> list[
     return [each for each in thread_of(executor, executors) if each.name != executor.name]
 
 
+def why_unknown(executor: Executor, executors: Iterable[Executor]) -> str:
+    """Why the time of the loop of an executor is unknown; "" if it is not.
+
+    What a thread does besides, such as publishing outside of callbacks, uses the session and its buffers, as all that share them notice.
+    """
+    return next((each.unknown for each in sharing(executor, executors) if each.unknown), "")
+
+
 def independent_handles(executor: Executor) -> tuple[Handle, ...]:
     """The handles that can be ready besides a message that excludes others; an action server also has a timer."""
     return tuple(

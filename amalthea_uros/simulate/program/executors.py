@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
-from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of
+from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of, why_unknown
 from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
@@ -238,8 +238,9 @@ class IterationCompiler:
         code.add(layout.PLAN_ITERATION, self.record)
 
     def _check(self) -> None:
-        if self.executor.unknown:
-            raise UnknownError(self.executor.unknown)
+        reason = why_unknown(self.executor, self.body.context.system.executors)
+        if reason:
+            raise UnknownError(reason)
         for other in thread_of(self.executor, self.body.context.system.executors):
             if other.task not in self.body.resources.processes:
                 raise UnknownError(f"{other.name!r}, which spins in the same loop, is not simulated")

@@ -92,7 +92,9 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     for frame in planned.foreign:
         if frame.name in system.processes:
             context.notes.duplicate("process or frame", frame.name, frame.origin, system.processes[frame.name].origin)
-    queued = [*queueing.of(planned.messages), *map(queueing.foreign, planned.foreign)]
+    # What a loop sends outside of callbacks is on the wire, too; nobody knows how often.
+    outside = {each.task if each.place is None else each.place.thread: each for each in system.executors if each.unknown}
+    queued = [*queueing.of(planned.messages), *map(queueing.foreign, planned.foreign), *map(queueing.outside, outside.values())]
     plan = WirePlan(
         line=planned.line,
         name=free_name(planned.line.name, system),
