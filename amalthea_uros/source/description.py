@@ -16,6 +16,7 @@ from amalthea_uros.source.facts import (
     CodeHandle,
     CodeLoopItem,
     CodeLoopKind,
+    CodeSender,
     SpinKind,
     Thread,
 )
@@ -100,13 +101,15 @@ def _os(facts: CodeFacts) -> Iterator[str]:
 
 def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) -> Iterator[str]:
     executors = list(facts.executors.values())
-    if len(executors) == 1:
+    if len(executors) == 1 and not facts.senders:
         yield "executor:"
         yield from (f"  {line}" for line in _executor(executors[0], facts, names))
-    elif executors:
+    elif executors or facts.senders:
         yield "executors:"
         for executor in executors:
             yield from _item(_executor(executor, facts, names), "  ")
+        for sender, name in zip(facts.senders, names.senders, strict=True):
+            yield from _item(_sender(sender, name, names), "  ")
     else:
         yield f"executor: {GAP} # none is initialised in these files"
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
@@ -169,6 +172,14 @@ def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Ite
     yield f"execution_time: {{base: {GAP}, per_message: {GAP}}} # of a round, and of taking a message"
 
 
+def _sender(sender: CodeSender, name: str, names: CodeNames) -> Iterator[str]:
+    yield f"name: {quoted(name)}{_at(sender.place, 'publishes outside of callbacks')}"
+    if sender.thread is not None:
+        yield from _thread(sender.thread)
+    yield "loop:"
+    yield from (f"  - {_loop_item(item, None, names)}" for item in sender.items)
+
+
 def _thread(thread: Thread) -> Iterator[str]:
     if thread.stack is not None:
         yield f"stack: {thread.stack} B{_at(thread.place)}"
@@ -206,12 +217,12 @@ def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
     yield f"loop: {{{', '.join(parts)}}}{_at(spin.place, others)}"
 
 
-def _loop_item(item: CodeLoopItem, owner: CodeExecutor, names: CodeNames) -> str:
+def _loop_item(item: CodeLoopItem, owner: CodeExecutor | None, names: CodeNames) -> str:
     comment = _at(item.place, item.note)
     if item.kind is CodeLoopKind.PUBLISH:
         topic = names.topics.get(item.of)
         return f"{item.kind}: {GAP if topic is None else f'[{quoted(topic)}]'}{comment}"
-    if item.kind is CodeLoopKind.SPIN and item.of != owner.key:
+    if item.kind is CodeLoopKind.SPIN and (owner is None or item.of != owner.key):
         return f"{{{item.kind}: {_time(item.time)}, executor: {quoted(names.executors[item.of])}}}{comment}"
     return f"{item.kind}: {_time(item.time)}{comment}"
 

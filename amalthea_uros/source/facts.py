@@ -180,6 +180,21 @@ class Spin:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CodeSender:
+    """A loop that sends outside of callbacks, and in which no executor spins.
+
+    Attributes
+    ----------
+    name : of its thread, else of the function that it is in
+    """
+
+    name: str
+    thread: Thread | None
+    items: tuple[CodeLoopItem, ...]
+    place: Location
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CodeTrigger:
     """The trigger of an executor.
 
@@ -258,6 +273,7 @@ class CodeFacts:
 
     entities: dict[str, CodeEntity] = field(default_factory=dict)
     executors: dict[str, CodeExecutor] = field(default_factory=dict)
+    senders: list[CodeSender] = field(default_factory=list)
     publishes: dict[str, dict[str, Location]] = field(default_factory=dict)
     transport: CodeTransport | None = None
     options: dict[str, CodeOption] = field(default_factory=dict)

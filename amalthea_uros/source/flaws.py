@@ -48,6 +48,7 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
         yield from _waiting(executor)
         yield from _timers(executor, facts)
         yield from _triggers(executor)
+    yield from _sessions(facts)
     yield from _sleepless(facts, walk)
     yield from _blocking(facts, walk)
     yield from _pings(facts, walk)
@@ -177,6 +178,19 @@ def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
             )
 
 
+def _sessions(facts: CodeFacts) -> Iterator[Finding]:
+    """Threads that use the session of the middleware without a lock: eProsima/Micro-XRCE-DDS-Client CMakeLists.txt."""
+    option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
+    spinning = {executor.thread.place: executor.thread.name for executor in facts.executors.values() if executor.thread is not None}
+    sending = {sender.place: sender.name for sender in facts.senders}
+    names = [*spinning.values(), *sending.values()]
+    if len(names) > 1 and (option is None or option.value.upper() not in ("ON", "1", "TRUE")):
+        place = next(iter(sending or spinning))
+        message = f"{' and '.join(map(repr, names))} use one session of the middleware, which nothing locks in these files"
+        advice = "Build with UCLIENT_PROFILE_MULTITHREAD=ON, or publish in callbacks of the executor."
+        yield Finding("IMP023", Severity.WARNING, message, place, advice)
+
+
 def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """Calls that seem to sleep, and do not."""
     for call in walk.calls:
@@ -187,7 +201,8 @@ def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
 
 def _in_loops(facts: CodeFacts) -> set[Location]:
     """Where what the loops of the description have is."""
-    return {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
+    spun = {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
+    return spun | {item.place for sender in facts.senders for item in sender.items}
 
 
 def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
@@ -200,7 +215,7 @@ def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
             continue
         told.add(call.place)
         if call.place in described:
-            message = f"'{entity.variable}' publishes in the loop, outside of callbacks: how long the loop takes is unknown"
+            message = f"'{entity.variable}' publishes in a loop, outside of callbacks: how long that takes is unknown"
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
         elif call.place not in published:
             message = f"'{entity.variable}' publishes outside of callbacks, which the description does not have"

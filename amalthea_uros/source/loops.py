@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
-from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, Spin, SpinKind
+from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind, Thread
 from amalthea_uros.source.ports import MILLISECOND
 from amalthea_uros.source.sleeps import SLEEPS, WaitCall, wait_of
 from amalthea_uros.source.walk import FunctionCall
@@ -40,6 +40,27 @@ def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall]) -
         items=tuple(_items(facts, call, calls)) if kind is SpinKind.SOME and is_loop else (),
         is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or is_loop,
     )
+
+
+def note_senders(facts: CodeFacts, calls: Sequence[FunctionCall], threads: Mapping[str, Thread]) -> None:
+    """Add the loops that send outside of callbacks, and in which no executor spins.
+
+    Parameters
+    ----------
+    threads : by the scopes of the functions that they begin with
+    """
+    published = {place for places in facts.publishes.values() for place in places.values()}
+    known = published | {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
+    for call in calls:
+        sender = call.argument(0)
+        is_sending = call.name in SENDS and sender is not None and sender.key in facts.entities
+        if not is_sending or not is_repeated(call) or call.root is None or call.place in known:
+            continue
+        items = tuple(_items(facts, call, calls))
+        known |= {item.place for item in items}
+        thread = threads.get(call.root.scope)
+        name = thread.name if thread is not None else call.root.name
+        facts.senders.append(CodeSender(name=name, thread=thread, items=items, place=call.place))
 
 
 def is_repeated(call: FunctionCall) -> bool:

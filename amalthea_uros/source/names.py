@@ -13,6 +13,7 @@ class CodeNames:
     Attributes
     ----------
     executors : by key
+    senders : those of the loops that only send, in their order
     topics : of publishers, by key, as far as they are constant
     handles : names of callbacks by the key of what they were added with
     handle_by_entity : the handle of an entity, and the name of its executor
@@ -29,6 +30,7 @@ class CodeNames:
         for executor in facts.executors.values():
             name = executor.thread.name if executor.thread is not None else executor.variable
             self.executors[executor.key] = self._unique(name, executor.variable)
+        self.senders = [self._unique(each.name, "sender") for each in facts.senders]
         for executor in facts.executors.values():
             for handle in executor.handles:
                 entity = facts.entities.get(handle.entity)

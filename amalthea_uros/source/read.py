@@ -11,7 +11,7 @@ from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws, not_understood
-from amalthea_uros.source.loops import SENDS, note_spins
+from amalthea_uros.source.loops import SENDS, note_senders, note_spins
 from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.platform import platform_of
 from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
@@ -41,8 +41,9 @@ def read_facts(sources: Sources) -> CodeFacts:
     facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, sources.build)
     _note_objects(facts, walk)
     note_spins(facts, walk.calls)
-    _note_threads(facts, walk)
+    threads = _note_threads(facts, walk)
     _note_publications(facts, walk)
+    note_senders(facts, walk.calls, threads)
     facts.transport = transport_of(walk.calls, program)
     for file in sources.meta:
         facts.options |= _options(file)
@@ -68,8 +69,8 @@ def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:
             ACTIONS[call.name](facts, call, walk)
 
 
-def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
-    """Give each executor the thread whose entry leads to its spin."""
+def _note_threads(facts: CodeFacts, walk: CodeWalk) -> dict[str, Thread]:
+    """Give each executor the thread whose entry leads to its spin; all threads by the scopes of their entries."""
     is_idf = any(b'"freertos/' in file.text or b"<freertos/" in file.text for file, _ in walk.program.files)
     threads = [thread_of(call, walk, not is_idf) for call in walk.calls if call.name in FORMS]
     by_entry: dict[str, Thread] = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
@@ -78,6 +79,7 @@ def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
         executor = facts.executors.get(given.key) if call.name in SPINS and given is not None else None
         if executor is not None and call.root is not None:
             executor.thread = executor.thread or by_entry.get(call.root.scope)
+    return by_entry
 
 
 def _note_publications(facts: CodeFacts, walk: CodeWalk) -> None:

@@ -45,6 +45,11 @@ class LoopItem(DescriptionSection):
         """Whether the executor spins that the loop belongs to."""
         return self.spin_some is not None and self.executor is None
 
+    @property
+    def uses_agent(self) -> bool:
+        """Whether it sends or waits for an answer, besides a spin."""
+        return self.publish is not None or self.ping is not None or self.sync is not None
+
 
 class LoopSection(Shorthand):
     """How the thread of an executor spins: a list of items, or exactly one of `spin_some`, `spin_period` and `spin`."""
@@ -79,10 +84,17 @@ class LoopSection(Shorthand):
         self._check_spins(self.items)
         return self
 
+    @property
+    def only_sends(self) -> bool:
+        """Whether nothing spins in it: its thread publishes, and that of another executor spins."""
+        return self.items is not None and all(item.spin_some is None for item in self.items)
+
     def _check_spins(self, items: list[LoopItem] | None) -> None:
         if items is None:
             return
         own = sum(item.is_own_spin for item in items)
+        if self.only_sends and any(item.uses_agent for item in items):
+            return
         if own != 1:
             raise problem(f"expected one 'spin_some' without 'executor', that of this executor, found {own}")
         others = [item.executor for item in items if item.executor is not None]

@@ -21,7 +21,7 @@ from amalthea_uros.uros.assembly.executor_runnables import (
     own_task_calls,
 )
 from amalthea_uros.uros.assembly.planned import PlannedTask, activity_sequence, trigger_name
-from amalthea_uros.uros.executors.add import add_looping_executor
+from amalthea_uros.uros.executors.add import add_looping_executor, add_sending_thread
 from amalthea_uros.uros.executors.checks import check_order, check_threads
 from amalthea_uros.uros.executors.threads import check_threads_of_loops, in_thread_order, thread_items, threads_of
 from amalthea_uros.uros.periods import (
@@ -46,7 +46,9 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
         inside = [callback for callback in own if callback.in_executor]
         ordered = registration_order(inside if executor.loop is None else own, executor, context.notes)
         check_order(executor, context.notes)
-        if not own and (executor.loop is not None or len(executors) > 1):
+        if executor.loop is not None and executor.loop.only_sends and not own:
+            add_sending_thread(context, executor)
+        elif not own and (executor.loop is not None or len(executors) > 1):
             advice = f"Set 'runs_in: {executor.name}' at callbacks or nodes, or remove the executor."
             context.notes.error("APP003", f"the executor {executor.name!r} serves no callback", executor.location(), advice)
         elif executor.loop is not None:

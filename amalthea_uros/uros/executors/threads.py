@@ -7,7 +7,7 @@ belongs to the last one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.perf.distributions import Boundaries
@@ -41,8 +41,8 @@ class ThreadItems:
     @property
     def unknown(self) -> str:
         """What the thread does besides, of which nobody knows how long it takes; "" for nothing."""
-        found = [text for item in self.items if (text := _unknown(item))]
-        return f"its loop also {' and '.join(dict.fromkeys(found))}, which takes an unknown time" if found else ""
+        found = _sent_outside(self.items)
+        return f"its loop also {found}, which takes an unknown time" if found else ""
 
     def loop(self, name: str, os: OsSection) -> ThreadLoop:
         """The loop as one of its executors has it: with all sleeps."""
@@ -80,6 +80,19 @@ class ThreadItems:
                 spinning = item.executor or self.owner
             elif spinning == name:
                 yield item
+
+
+def why_unknown_time(name: str, middleware: Middleware) -> str:
+    """Why the time of the loop of an executor is unknown: what its thread, or another one, sends outside of callbacks; "" if it is not."""
+    items = thread_items(name, middleware)
+    for each in middleware.stated_executors:
+        if each.loop is not None and each.loop.only_sends:
+            return f"the thread {each.name!r} {_sent_outside(each.loop.items or ())}, which delays it for an unknown time"
+    return "" if items is None else items.unknown
+
+
+def _sent_outside(items: Iterable[LoopItem]) -> str:
+    return " and ".join(dict.fromkeys(text for item in items if (text := _unknown(item))))
 
 
 def _unknown(item: LoopItem) -> str:

@@ -15,10 +15,11 @@ from functools import cached_property
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.distributions import Uniform
-from amalthea_uros.perf.executors import Executor, HandleKind
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import Counter, Custom, InterProcess, Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.perf.system import System
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import body_name
@@ -123,8 +124,8 @@ class Queueing:
             origin=frame.origin,
         )
 
-    def outside(self, executor: Executor) -> Queued:
-        """What the loop of an executor sends outside of callbacks."""
+    def outside(self, executor: ExecutorSection, reason: str) -> Queued:
+        """What the loop of a thread sends outside of callbacks."""
         name, length = f"{executor.name}_outside_callbacks", 63 if isinstance(self.line.section, Can | CanFd) else _LONGEST_PART
         return Queued(
             transmission=Transmission(
@@ -136,9 +137,9 @@ class Queueing:
                 agent=_AT_ONCE,
             ),
             parts=(length,),
-            stimulus=Custom(name=name, description=executor.unknown, origin=executor.origin),
+            stimulus=Custom(name=name, description=reason, origin=executor.location()),
             interval=None,
-            origin=executor.origin,
+            origin=executor.location(),
         )
 
     def _received(self, message: WireMessage) -> Iterator[Queued]:
