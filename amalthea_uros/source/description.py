@@ -163,6 +163,8 @@ def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Ite
     if not _is_of_other_loop(executor):
         yield from _loop(executor, names)
     yield "callbacks: in-executor"
+    if not any(handle.entity in facts.entities for handle in executor.handles):
+        yield f"order: {GAP} # nothing that is added to it is understood: describe its callbacks under the nodes"
     order = [names.handles[handle.entity] for handle in executor.handles if handle.entity in names.handles]
     if len(order) > 1:
         yield f"order: [{', '.join(map(quoted, order))}]"

@@ -38,6 +38,16 @@ _POOLS = {
 }
 
 
+_BASICS = ("RMW_UXRCE_MAX_NODES", "RMW_UXRCE_MAX_PUBLISHERS", "RMW_UXRCE_MAX_SUBSCRIPTIONS", "RMW_UXRCE_MAX_SERVICES", "RMW_UXRCE_MAX_CLIENTS")
+#: Pools that a port is built with, where they are smaller, and how a finding calls that: the .meta files and Kconfig of
+#: micro-ROS/micro_ros_arduino, micro_ros_espidf_component and micro_ros_zephyr_module.
+_OF_PORT = {
+    "arduino": ("in the smallest of its prebuilt libraries", dict(zip(_BASICS, (1, 2, 1, 1, 1), strict=True))),
+    "espidf": ("by default in ESP-IDF", dict(zip(_BASICS, (1, 2, 2, 1, 1), strict=True))),
+    "zephyr": ("by default in Zephyr", dict(zip(_BASICS, (1, 1, 1, 1, 1), strict=True))),
+}
+
+
 def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """The findings about the application itself."""
     yield from _unchecked(walk.calls)
@@ -66,13 +76,16 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
     for name, (default, kinds) in _POOLS.items():
         used = [entity for entity in facts.entities.values() if entity.kind in kinds]
         option = facts.options.get(name)
-        size = int(option.value) if option is not None and option.value.isdecimal() else default
+        by_default, sizes = _OF_PORT.get(facts.port, ("by default", {}))
+        size = int(option.value) if option is not None and option.value.isdecimal() else sizes.get(name, default)
         if len(used) > size:
-            stated = f"in {option.place.path}" if option is not None else "by default"
+            stated = f"in {option.place.path}" if option is not None else by_default if name in sizes else "by default"
             message = f"{counted(len(used), kinds[0].value)} need {name}={len(used)}, which is {size} {stated}"
             if len(kinds) > 1:
                 message = f"the timers and guard conditions need {name}={len(used)}, which is {size} {stated}"
             advice = "Set it in colcon.meta and rebuild libmicroros from scratch."
+            if facts.port == "arduino" and option is None:
+                advice = "Take a board whose library has more, such as ESP32 or Teensy 4 with 10, or build the library anew."
             severity = Severity.ERROR if option is not None else Severity.WARNING
             yield Finding("IMP007", severity, message, used[size].place, advice)
 
@@ -129,7 +142,8 @@ def _waiting(executor: CodeExecutor) -> Iterator[Finding]:
             yield Finding(
                 "IMP010", Severity.WARNING, message, spin.place, "Call rclc_executor_set_timeout with less than the period."
             )
-        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.sleep == 0:
+        is_first = not spin.items or spin.items[0].place == spin.place
+        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.sleep == 0 and is_first:
             message = "the loop does not sleep; with timers only, some versions of the middleware never wait either"
             yield Finding(
                 "IMP018",

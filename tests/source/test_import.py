@@ -22,6 +22,7 @@ FLAWS = {
     "parameter_server.c": {"IMP004"},
     "ping_pong.c": {"IMP012", "IMP021"},
     "reconnection.ino": {"IMP013", "IMP018"},
+    "two_executors.cpp": {"IMP023"},
     "zephyr_main.c": {"IMP009"},
 }
 BODY = """
