@@ -265,7 +265,7 @@ def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) 
     if publishers:
         yield "publishers:"
         for publisher in publishers:
-            yield from _item(_publisher(publisher), "  ")
+            yield from _item(_publisher(publisher, facts), "  ")
     handles = names.handle_by_entity
     for kind, key in _LISTS.items():
         entities = [each for each in own if each.kind is kind and each.key in handles]
@@ -276,16 +276,16 @@ def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) 
     yield from _servers(node, own, facts, names)
 
 
-def _publisher(entity: CodeEntity) -> Iterator[str]:
+def _publisher(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
     yield f"topic: {quoted(entity.name) if entity.name else GAP}{_at(entity.place)}"
-    yield _size("message_size", entity.type)
+    yield _size("message_size", entity.type, facts)
     yield f"reliability: {entity.reliability or GAP}"
 
 
-def _size(key: str, kind: MessageType | None) -> str:
+def _size(key: str, kind: MessageType | None, facts: CodeFacts) -> str:
     if kind is None:
         return f"{key}: {GAP}"
-    length = length_of(kind)
+    length = length_of(kind, facts.types)
     if length is None:
         return f"{key}: {GAP}{_at(None, str(kind))}"
     if not length.is_fixed:
@@ -295,7 +295,7 @@ def _size(key: str, kind: MessageType | None) -> str:
 
 def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     yield f"name: {quoted(names.handles[entity.key])}{_at(handle.place)}"
-    yield from _content(entity)
+    yield from _content(entity, facts)
     if entity.kind is CodeEntityKind.TIMER:
         yield f"period: {_time(entity.period)}{_at(entity.place)}"
     elif entity.kind not in _NOT_ARRIVING:
@@ -308,18 +308,18 @@ def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: Code
     yield from _outputs(entity, handle, facts, names)
 
 
-def _content(entity: CodeEntity) -> Iterator[str]:
+def _content(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
     named = quoted(entity.name) if entity.name else GAP
     match entity.kind:
         case CodeEntityKind.SUBSCRIPTION:
             yield f"topic: {named}{_at(entity.place)}"
-            yield _size("message_size", entity.type)
+            yield _size("message_size", entity.type, facts)
             yield f"reliability: {entity.reliability or GAP}"
         case CodeEntityKind.SERVICE | CodeEntityKind.CLIENT:
             if entity.kind is CodeEntityKind.CLIENT:
                 yield f"service: {named}{_at(entity.place)}"
             for key, suffix in (("request_size", "Request"), ("response_size", "Response")):
-                yield _size(key, entity.type.part(suffix) if entity.type is not None else None)
+                yield _size(key, entity.type.part(suffix) if entity.type is not None else None, facts)
         case CodeEntityKind.ACTION_SERVER | CodeEntityKind.ACTION_CLIENT:
             if entity.kind is CodeEntityKind.ACTION_CLIENT:
                 yield f"action: {named}{_at(entity.place)}"

@@ -265,6 +265,7 @@ class CodeFacts:
     Attributes
     ----------
     publishes : keys of publishers and clients by the functions that use them, with the places
+    types : those that the application defines, with the types of their fields
     rtos : the operating system, "" if unknown
     port : how micro-ROS was brought to the controller, "" if unknown
     tick_rate : its ticks per second
@@ -276,6 +277,7 @@ class CodeFacts:
     senders: list[CodeSender] = field(default_factory=list)
     publishes: dict[str, dict[str, Location]] = field(default_factory=dict)
     transport: CodeTransport | None = None
+    types: dict[str, str] = field(default_factory=dict)
     options: dict[str, CodeOption] = field(default_factory=dict)
     rtos: str = ""
     port: str = ""

@@ -23,7 +23,7 @@ def message_flaws(facts: CodeFacts, program: CodeProgram) -> Iterator[Finding]:
     for executor in facts.executors.values():
         for handle in executor.handles:
             entity = facts.entities.get(handle.entity)
-            if entity is not None and handle.message and _lacks_memory(entity, handle, text):
+            if entity is not None and handle.message and _lacks_memory(entity, handle, facts, text):
                 message = (
                     f"nothing gives the strings and sequences of '{handle.message}' ({entity.type}) memory: "
                     "messages that need it are not taken, and the callback never runs for them"
@@ -34,9 +34,9 @@ def message_flaws(facts: CodeFacts, program: CodeProgram) -> Iterator[Finding]:
         yield from _too_long(entity, facts)
 
 
-def _lacks_memory(entity: CodeEntity, handle: CodeHandle, text: str) -> bool:
+def _lacks_memory(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, text: str) -> bool:
     """Whether a type has strings or sequences, and no text looks as if it gave a variable memory for them."""
-    length = length_of(entity.type) if entity.type is not None else None
+    length = length_of(entity.type, facts.types) if entity.type is not None else None
     if length is None or length.is_fixed:
         return False
     name = re.escape(re.split(r"\W", handle.message)[0])
@@ -47,7 +47,7 @@ def _lacks_memory(entity: CodeEntity, handle: CodeHandle, text: str) -> bool:
 
 
 def _too_long(entity: CodeEntity, facts: CodeFacts) -> Iterator[Finding]:
-    length = length_of(entity.type) if entity.type is not None else None
+    length = length_of(entity.type, facts.types) if entity.type is not None else None
     if length is None or entity.reliability != BEST_EFFORT:
         return
     if entity.kind not in (CodeEntityKind.PUBLISHER, CodeEntityKind.SUBSCRIPTION):

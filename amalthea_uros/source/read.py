@@ -13,6 +13,7 @@ from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws, not_understood
 from amalthea_uros.source.loops import SENDS, note_senders, note_spins
 from amalthea_uros.source.message_flaws import message_flaws
+from amalthea_uros.source.messages import defined_types
 from amalthea_uros.source.platform import platform_of
 from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
@@ -36,7 +37,7 @@ def read_facts(sources: Sources) -> CodeFacts:
     program = read_program(sources.code)
     walk = CodeWalk(program, _NAMES)
     walk.all()
-    facts = CodeFacts()
+    facts = CodeFacts(types=defined_types(sources.interfaces))
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program)]
     facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, sources.build)
     _note_objects(facts, walk)
