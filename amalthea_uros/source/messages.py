@@ -19,6 +19,8 @@ _LENGTHS = {
     **dict.fromkeys(("int32", "uint32", "float32"), 4),
     **dict.fromkeys(("int64", "uint64", "float64"), 8),
 }
+#: What is longer is not sent by a controller.
+_LONGEST = 2**20
 _FIELD = re.compile(r"([\w/]+)(\[([<=\d]*)\])?")
 
 
@@ -60,11 +62,9 @@ def length_of(kind: MessageType, own: Mapping[str, str] = MappingProxyType({})) 
     """
     types = _types() | own
     try:
-        length = _after(Length(0, True), str(kind), types, ())
+        return _after(Length(0, True), str(kind), types, ())
     except KeyError:
         return None
-    # A structure without fields gets one of a byte: ros2/rosidl, rosidl_generator_c, structure_needs_at_least_one_member.
-    return length if length.bytes else Length(1, True)
 
 
 @cache
@@ -87,12 +87,15 @@ def _after(before: Length, kind: str, types: Mapping[str, str], around: tuple[st
         raise KeyError(kind)
     for name, brackets, count in _FIELD.findall(types[kind]):
         inner = name if "/" in name or name in _LENGTHS or name == "string" else f"{package}/{name}"
-        if brackets and not count.isdecimal():
+        if brackets and (not count.isdecimal() or len(count) > 7):
             before = Length(_aligned(before.bytes, 4) + 4, False)
         else:
             for _ in range(int(count or 1)):
                 before = _after(before, inner, types, (*around, kind))
-    return before
+                if before.bytes > _LONGEST:
+                    raise KeyError(kind)
+    # A structure without fields gets one of a byte: ros2/rosidl, rosidl_generator_c, structure_needs_at_least_one_member.
+    return before if types[kind] else Length(before.bytes + 1, before.is_fixed)
 
 
 def _aligned(position: int, size: int) -> int:
@@ -101,8 +104,6 @@ def _aligned(position: int, size: int) -> int:
 
 #: A line of a definition: a type, which can be bounded and an array, and a name; a constant has a value after that.
 _LINE = re.compile(r"([\w/]+)(?:<=\d+)?(\[[<=\d]*\])?\s+(\w+)\s*(=?)")
-#: A field of an array with so many elements cannot be sent.
-_MOST_ELEMENTS = 1_000_000
 
 
 def defined_types(definitions: Iterable[SourceFile]) -> dict[str, str]:
@@ -124,10 +125,7 @@ def _fields(text: str, package: str) -> Iterator[str]:
         match = _LINE.match(line.partition("#")[0].strip())
         if match is None or match[4]:
             continue
-        name, array = match[1], match[2] or ""
-        if int("0" + array.strip("[]<=")) > _MOST_ELEMENTS:
-            array = "[]"
-        yield f"{_qualified(name, package)}{array}"
+        yield f"{_qualified(match[1], package)}{match[2] or ''}"
 
 
 def _qualified(name: str, package: str) -> str:
