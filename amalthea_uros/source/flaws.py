@@ -38,7 +38,13 @@ _POOLS = {
 }
 
 
-_BASICS = ("RMW_UXRCE_MAX_NODES", "RMW_UXRCE_MAX_PUBLISHERS", "RMW_UXRCE_MAX_SUBSCRIPTIONS", "RMW_UXRCE_MAX_SERVICES", "RMW_UXRCE_MAX_CLIENTS")
+_BASICS = (
+    "RMW_UXRCE_MAX_NODES",
+    "RMW_UXRCE_MAX_PUBLISHERS",
+    "RMW_UXRCE_MAX_SUBSCRIPTIONS",
+    "RMW_UXRCE_MAX_SERVICES",
+    "RMW_UXRCE_MAX_CLIENTS",
+)
 #: Pools that a port is built with, where they are smaller, and how a finding calls that: the .meta files and Kconfig of
 #: micro-ROS/micro_ros_arduino, micro_ros_espidf_component and micro_ros_zephyr_module.
 _OF_PORT = {
@@ -195,7 +201,9 @@ def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
 def _sessions(facts: CodeFacts) -> Iterator[Finding]:
     """Threads that use the session of the middleware without a lock: eProsima/Micro-XRCE-DDS-Client CMakeLists.txt."""
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
-    spinning = {executor.thread.place: executor.thread.name for executor in facts.executors.values() if executor.thread is not None}
+    spinning = {
+        executor.thread.place: executor.thread.name for executor in facts.executors.values() if executor.thread is not None
+    }
     sending = {sender.place: sender.name for sender in facts.senders}
     names = [*spinning.values(), *sending.values()]
     if len(names) > 1 and (option is None or option.value.upper() not in ("ON", "1", "TRUE")):
@@ -210,7 +218,9 @@ def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     for call in walk.calls:
         if call.name in SLEEPS and (wait := wait_of(call, facts)).note:
             message = f"'{call.name}' does not sleep here: {wait.note}"
-            yield Finding("IMP020", Severity.WARNING, message, call.place, "Use a function and a time with which the thread sleeps.")
+            yield Finding(
+                "IMP020", Severity.WARNING, message, call.place, "Use a function and a time with which the thread sleeps."
+            )
 
 
 def _in_loops(facts: CodeFacts) -> set[Location]:

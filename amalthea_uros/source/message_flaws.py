@@ -52,12 +52,16 @@ def _too_long(entity: CodeEntity, facts: CodeFacts) -> Iterator[Finding]:
         return
     if entity.kind not in (CodeEntityKind.PUBLISHER, CodeEntityKind.SUBSCRIPTION):
         return
-    stated = [int(option.value) for name, option in facts.options.items() if _MTU_OPTION.fullmatch(name) and option.value.isdecimal()]
+    stated = [
+        int(option.value) for name, option in facts.options.items() if _MTU_OPTION.fullmatch(name) and option.value.isdecimal()
+    ]
     mtu = max(stated, default=_MTU)
     if length.bytes > mtu - _HEADERS:
         message = (
             f"a message of {entity.type} has {length.bytes} B or more, and best effort sends no parts: "
             f"with an MTU of {mtu} B none arrives"
         )
-        advice = f"Make it reliable, or set the MTU of the transport to {length.bytes + _HEADERS} B or more and rebuild libmicroros."
+        advice = (
+            f"Make it reliable, or set the MTU of the transport to {length.bytes + _HEADERS} B or more and rebuild libmicroros."
+        )
         yield Finding("IMP022", Severity.WARNING, message, entity.place, advice)

@@ -23,9 +23,7 @@ class CodeNames:
         self._used: set[str] = set()
         self.executors: dict[str, str] = {}
         self.handles: dict[str, str] = {}
-        self.topics = {
-            each.key: each.name for each in facts.of_kind(CodeEntityKind.PUBLISHER) if each.name is not None
-        }
+        self.topics = {each.key: each.name for each in facts.of_kind(CodeEntityKind.PUBLISHER) if each.name is not None}
         self.handle_by_entity: dict[str, tuple[CodeHandle, str]] = {}
         for executor in facts.executors.values():
             name = executor.thread.name if executor.thread is not None else executor.variable

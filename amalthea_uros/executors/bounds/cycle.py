@@ -143,7 +143,9 @@ class Cycle:
             session_wait=session_wait(self.executor, system, self.sending, writes),
             writing=writing_in_wait(self.executor, system, self.sending, writes),
         )
-        cycle = replace(cycle, others=tuple(cycle._with_wait(each, writes) for each in others_of_thread(self.executor, system.executors)))
+        cycle = replace(
+            cycle, others=tuple(cycle._with_wait(each, writes) for each in others_of_thread(self.executor, system.executors))
+        )
         if not acknowledgements(system):
             return cycle
         return replace(cycle, backlog_age=cycle._backlog_age())

@@ -60,7 +60,12 @@ class IterationDemand:
         # What a job executes besides its activities, such as copies of labels, can be anywhere in it.
         beside = context.demand_model.of_process(process, core).worst - demand(process.activities).upper
         # Calls that no handle has are overhead of the operating system around the iteration.
-        own = {executor.spin, executor.poll, executor.busy_wait, *(name for handle in handles for name in (handle.take, handle.runnable))}
+        own = {
+            executor.spin,
+            executor.poll,
+            executor.busy_wait,
+            *(name for handle in handles for name in (handle.take, handle.runnable)),
+        }
         foreign = demand(each for each in process.activities if isinstance(each, Call) and each.runnable not in own)
         return cls(
             spin=Interval(spin.lower, spin.upper + max(0, beside) + foreign.upper),

@@ -56,5 +56,7 @@ def check_sleeps(description: Description, notes: Notes) -> None:
                 f"{executor.name!r} sleeps {time_text(least)} to {time_text(most)} instead of {time_text(sleep)}: "
                 f"{os.title} counts in ticks of {time_text(os.tick)}"
             )
-            advice = "Sleep for a whole number of ticks, or shorten the tick of the operating system, and set 'tick' under 'os'."
+            advice = (
+                "Sleep for a whole number of ticks, or shorten the tick of the operating system, and set 'tick' under 'os'."
+            )
             notes.warning("UR161", message, section.location("sleep"), advice)

@@ -150,9 +150,10 @@ def check_threads_of_loops(middleware: Middleware, notes: Notes) -> None:
             differs = [key for key in ("priority", "core") if other.states(key) and getattr(other, key) != getattr(owner, key)]
             if differs:
                 message = f"{other.name!r} spins in the thread of {owner.name!r}, and has another {differs[0]}"
-                notes.error("APP003", message, other.location(differs[0]), f"Remove {differs[0]!r}: that of {owner.name!r} holds.")
+                notes.error(
+                    "APP003", message, other.location(differs[0]), f"Remove {differs[0]!r}: that of {owner.name!r} holds."
+                )
             if item.executor == owner.name or again or (other.states("loop") and not other.inherits("loop")):
                 message = f"{item.executor!r} spins in the loop of {owner.name!r}, and elsewhere, too"
                 advice = "Let an executor spin in one loop; one that spins in that of another executor has no 'loop'."
                 notes.error("APP003", message, item.location("executor"), advice)
-
