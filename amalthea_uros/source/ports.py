@@ -8,7 +8,7 @@ from typing import NamedTuple
 from amalthea_uros.source.entities import callback_of
 from amalthea_uros.source.facts import CodeTransport, Thread
 from amalthea_uros.source.program import CodeProgram
-from amalthea_uros.source.scope import Expression, called
+from amalthea_uros.source.scope import Expression
 from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 
