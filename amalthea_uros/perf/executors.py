@@ -164,7 +164,7 @@ class WaitBehaviour(Brief):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThreadPlace(Brief):
-    """The place of an executor in the loop of a thread that several ones share: they spin one after the other, in the order of the system.
+    """The place of an executor in a loop that several executors share: they spin one after the other, in the order of the system.
 
     Attributes
     ----------

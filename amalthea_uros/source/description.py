@@ -126,7 +126,7 @@ def _built_transport(facts: CodeFacts) -> Iterator[str]:
     """The transport of the build, where the description would take that of the wire for it."""
     is_udp = facts.transport is not None and facts.transport.key == "udp"
     if is_udp and facts.port in CUSTOM and "RMW_UXRCE_TRANSPORT" not in facts.options:
-        yield f"RMW_UXRCE_TRANSPORT: custom # {facts.port} sends by functions of its own, whatever is behind them"
+        yield f"RMW_UXRCE_TRANSPORT: custom # {facts.port} sends by functions of its own"
 
 
 def _limits(facts: CodeFacts, options: Mapping[str, str]) -> Iterator[str]:

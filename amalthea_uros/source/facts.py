@@ -122,7 +122,7 @@ class SpinKind(StrEnum):
 
 
 class CodeLoopKind(StrEnum):
-    """What a thread does in its loop, as `app.yaml` calls it."""
+    """The kind of an item of a loop, as `app.yaml` calls it."""
 
     SPIN = "spin_some"
     SLEEP = "sleep"

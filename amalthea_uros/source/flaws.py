@@ -231,13 +231,13 @@ def _in_loops(facts: CodeFacts) -> set[Location]:
 
 def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     published = {place for places in facts.publishes.values() for place in places.values()}
-    told, described = set(), _in_loops(facts)
+    reported, described = set(), _in_loops(facts)
     for call in walk.calls:
         given = call.argument(0)
         entity = facts.entities.get(given.key) if call.name == "rcl_publish" and given is not None else None
-        if entity is None or call.place in told:
+        if entity is None or call.place in reported:
             continue
-        told.add(call.place)
+        reported.add(call.place)
         if call.place in described:
             message = f"'{entity.variable}' publishes in a loop, outside of callbacks: how long that takes is unknown"
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")

@@ -1,4 +1,4 @@
-"""The loops of threads: what stands in the same loop as a call that lets an executor spin, in its order."""
+"""The loops of threads: the items in the same loop as a call that lets an executor spin, in their order."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROUND_TRIPS = tuple(_AGENT)
 SENDS = ("rcl_publish", "rcl_send_request")
 
 
-def note_spins(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
+def add_spins(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
     """Add to each executor how it spins, with everything else that is in the same loop."""
     for call in calls:
         if call.name in SPIN_KINDS and (executor := executor_of(facts, call)) is not None:
@@ -36,13 +36,13 @@ def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall]) -
         kind=kind,
         time=_timeout(call),
         place=call.place,
-        # What is before an endless loop, or in setup(), is not part of the round.
+        # A sleep before an endless loop, or in setup(), is not part of the iteration.
         items=tuple(_items(facts, call, calls)) if kind is SpinKind.SOME and is_loop else (),
         is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or is_loop,
     )
 
 
-def note_senders(facts: CodeFacts, calls: Sequence[FunctionCall], threads: Mapping[str, Thread]) -> None:
+def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall], threads: Mapping[str, Thread]) -> None:
     """Add the loops that send outside of callbacks, and in which no executor spins.
 
     Parameters
@@ -75,7 +75,7 @@ def _timeout(call: FunctionCall) -> Time | None:
 
 
 def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall]) -> Iterator[CodeLoopItem]:
-    """What is in the same loop, and not in another branch of a choice, such as another state."""
+    """The items in the same loop, and not in another branch of a choice, such as another state."""
     for call in calls:
         if call.root is not spin.root or call.loops != spin.loops or call.excludes(spin):
             continue
@@ -88,7 +88,7 @@ _TIMED = (CodeLoopKind.SLEEP, CodeLoopKind.BUSY_WAIT)
 
 
 def _sometimes(item: CodeLoopItem) -> CodeLoopItem:
-    return CodeLoopItem(kind=item.kind, time=None, place=item.place, note="not in each round")
+    return CodeLoopItem(kind=item.kind, time=None, place=item.place, note="not in each iteration")
 
 
 def _item(facts: CodeFacts, call: FunctionCall) -> CodeLoopItem | None:

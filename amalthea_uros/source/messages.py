@@ -108,7 +108,7 @@ _LINE = re.compile(r"([\w/]+)(?:<=\d+)?(\[[<=\d]*\])?\s+(\w+)\s*(=?)")
 
 def defined_types(definitions: Iterable[SourceFile]) -> dict[str, str]:
     """The types of the fields of messages and services, by the names of types, in files `package/msg/Name.msg`."""
-    found = {}
+    types = {}
     for file in definitions:
         kind, package, name = file.path.parent.name, file.path.parent.parent.name, file.path.stem
         if kind not in ("msg", "srv"):
@@ -116,8 +116,8 @@ def defined_types(definitions: Iterable[SourceFile]) -> dict[str, str]:
         parts = re.split(r"^-{3}\s*$", file.text.decode("utf-8", "replace"), flags=re.MULTILINE)
         names = [name] if kind == "msg" else [f"{name}_Request", f"{name}_Response"]
         for each, text in zip(names, parts, strict=False):
-            found[f"{package}/{kind}/{each}"] = " ".join(_fields(text, package))
-    return found
+            types[f"{package}/{kind}/{each}"] = " ".join(_fields(text, package))
+    return types
 
 
 def _fields(text: str, package: str) -> Iterator[str]:

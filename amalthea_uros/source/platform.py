@@ -29,12 +29,12 @@ _CONFIGURED_TICKS = re.compile(rb"^CONFIG_FREERTOS_HZ=(\d+)", re.MULTILINE)
 _RTOS = {"zephyr": "zephyr", "espidf": "freertos", "freertos": "freertos", "nuttx": "nuttx"}
 #: Ticks per second of a port if nobody changes them: espressif/esp-idf components/freertos/Kconfig.
 _TICKS = {"espidf": Fraction(100)}
-#: Ports whose library is built for functions of its own that send and receive, whatever is behind them: UDP, too.
+#: Ports whose library is built for functions of its own that send and receive, also over UDP.
 CUSTOM = ("arduino", "platformio", "cubemx", "pico-sdk", "zephyr", "renesas")
 
 
 class CodePlatform(NamedTuple):
-    """What a program runs on.
+    """The port and the operating system of a program.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class CodePlatform(NamedTuple):
 
 
 def platform_of(program: CodeProgram, calls: Iterable[FunctionCall], build: Iterable[SourceFile]) -> CodePlatform:
-    """What a program runs on, by its sources and files of its build system."""
+    """The port and the operating system of a program, by its sources and files of its build system."""
     every, stated = list(calls), _stated_ticks(program, build)
     port = _port(program)
     if port == "arduino" and any(call.name == "set_microros_wifi_transports" for call in every):

@@ -1,4 +1,4 @@
-"""What functions of operating systems and of ports to boards do: they start threads, and set the transport."""
+"""Functions of operating systems and of ports to boards that start threads, or set the transport."""
 
 from __future__ import annotations
 

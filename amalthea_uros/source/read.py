@@ -11,7 +11,7 @@ from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws, not_understood
-from amalthea_uros.source.loops import SENDS, note_senders, note_spins
+from amalthea_uros.source.loops import SENDS, add_senders, add_spins
 from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.messages import defined_types
 from amalthea_uros.source.platform import platform_of
@@ -41,10 +41,10 @@ def read_facts(sources: Sources) -> CodeFacts:
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program)]
     facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, sources.build)
     _note_objects(facts, walk)
-    note_spins(facts, walk.calls)
+    add_spins(facts, walk.calls)
     threads = _note_threads(facts, walk)
     _note_publications(facts, walk)
-    note_senders(facts, walk.calls, threads)
+    add_senders(facts, walk.calls, threads)
     facts.transport = transport_of(walk.calls, program)
     for file in sources.meta:
         facts.options |= _options(file)

@@ -67,12 +67,12 @@ class Expression:
         return own._returned() if node.type == "call_expression" else own
 
     def _returned(self) -> Expression:
-        """What a function of the sources that does nothing else returns, else itself."""
+        """The value that a function of the sources returns, if it does nothing else; else the call."""
         name, arguments = called(self.node)
-        found = self.program.functions.get(name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], ())
-        if len(found) != 1 or self.depth > _MAX_DEPTH:
+        functions = self.program.functions.get(name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], ())
+        if len(functions) != 1 or self.depth > _MAX_DEPTH:
             return self
-        function = found[0]
+        function = functions[0]
         statements = [child for child in function.body.named_children if child.type != "comment"]
         if len(statements) != 1 or statements[0].type != "return_statement" or not statements[0].named_children:
             return self

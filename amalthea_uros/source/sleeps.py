@@ -1,4 +1,4 @@
-"""What a call does that lets a thread sleep, by the operating system and the port: it sleeps, waits without sleeping, or does neither."""
+"""Calls that let a thread sleep: by the operating system and the port they sleep, wait busily, or return at once."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _divided(given: Expression) -> Time | None:
 
 
 class WaitCall(NamedTuple):
-    """What a call does.
+    """The wait of a call.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class WaitCall(NamedTuple):
 
 
 def wait_of(call: FunctionCall, facts: CodeFacts) -> WaitCall:
-    """What a call that lets a thread sleep does."""
+    """The wait of a call that seems to let a thread sleep."""
     rate = facts.tick_rate
     time = _sleep_time(call, rate if facts.ticks_are_stated else None)
     if call.name in (*_BUSY_MILLISECONDS, *_BUSY_MICROSECONDS):

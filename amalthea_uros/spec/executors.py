@@ -123,18 +123,18 @@ def with_shared_loops(executors: tuple[ExecutorSection, ...]) -> tuple[ExecutorS
         for item in each.loop.items or ()
         if item.executor is not None and item.executor != each.name
     }
-    found = []
+    executors_with_loops = []
     for each in executors:
         if each.loop is not None and each.loop.items is not None and not each.inherits("loop"):
             own = next((item for item in each.loop.items if item.is_own_spin), None)
             loop = each.loop.model_copy(update={"spin_some": None if own is None else own.spin_some})
-            found.append(each.model_copy(update={"loop": loop}))
+            executors_with_loops.append(each.model_copy(update={"loop": loop}))
         elif each.name in shared:
             owner, item = shared[each.name]
             loop = (owner.loop or LoopSection(spin_some=0)).model_copy(update={"spin_some": item.spin_some, "items": None})
             # Its thread is that of the owner.
             thread = {key: getattr(owner, key) for key in ("priority", "core", "overhead") if not each.states(key)}
-            found.append(each.model_copy(update={"loop": loop, **thread}))
+            executors_with_loops.append(each.model_copy(update={"loop": loop, **thread}))
         else:
-            found.append(each)
-    return tuple(found)
+            executors_with_loops.append(each)
+    return tuple(executors_with_loops)

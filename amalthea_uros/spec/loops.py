@@ -1,4 +1,4 @@
-"""What the thread of an executor does again and again: one call that spins, or a list of items in their order."""
+"""The loop of the thread of an executor: one call that spins, or a list of items in their order."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class LoopSection(Shorthand):
     """How the thread of an executor spins: a list of items, or exactly one of `spin_some`, `spin_period` and `spin`."""
 
     shorthand = ("items",)
-    plain_value = "What the thread does again and again, in this order."
+    plain_value = "The items of the loop, in this order."
 
     spin_some: Offset | None = None
     """Timeout of `rclc_executor_spin_some` in an endless loop; `sleep` follows each call."""
@@ -68,7 +68,7 @@ class LoopSection(Shorthand):
     timeout: Duration | None = None
     """Timeout of the executor, with `spin_period`; default: that of the middleware, 1 s for rclc."""
     items: Annotated[list[LoopItem], Field(min_length=1)] | None = None
-    """What the thread does again and again, in this order: `rclc_executor_spin_some` of this executor once, of others, and more."""
+    """What the thread does again and again, in this order: `rclc_executor_spin_some` of this executor once, of further ones, and more."""
 
     @model_validator(mode="after")
     def _is_one_of_four(self) -> Self:

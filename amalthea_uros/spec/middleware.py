@@ -176,7 +176,7 @@ class PoolSizes(DescriptionSection):
 
 
 def option_units() -> dict[str, str]:
-    """What the number of each build option counts: "B", "ms" or "number"; "switch" for a truth value, "word" for a choice."""
+    """The unit of each build option: "B", "ms" or "number"; "switch" for a truth value, "word" for a choice."""
     properties = PoolSizes.model_json_schema()["properties"]
     return {key: _unit(properties[key]["anyOf"][0]) for key in PoolSizes.model_fields}
 

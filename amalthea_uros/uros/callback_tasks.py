@@ -9,6 +9,7 @@ from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.spec.executors import ExecutorSection
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, body_name, registration_order
 from amalthea_uros.uros.application.phases import ExecutorPhases, own_task_counter

@@ -48,7 +48,8 @@ def timer(name, period, time, executor="e0", more=""):
 
 
 def subscription(name, rate, time, executor="e0"):
-    return f"name: {name}, topic: {name}_topic, message_size: 8 B, reliability: best-effort, rate: {rate} Hz, execution_time: {time} us, runs_in: {executor}"
+    message = f"topic: {name}_topic, message_size: 8 B, reliability: best-effort"
+    return f"name: {name}, {message}, rate: {rate} Hz, execution_time: {time} us, runs_in: {executor}"
 
 
 TWO = text_of(
@@ -183,7 +184,8 @@ def random_text(rng):
             callbacks["timers"].append(timer(f"t{number}", rng.choice([5, 20, 50]), time, executor, more))
         else:
             callbacks["subscriptions"].append(subscription(f"s{number}", rng.choice([1, 5, 10]), time, executor))
-    tasks = "tasks:\n  - {name: High, period: 10 ms, priority: 9, execution_time: 500 us}\n  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
+    tasks = "tasks:\n  - {name: High, period: 10 ms, priority: 9, execution_time: 500 us}\n"
+    tasks += "  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
     if rng.random() < 0.3:
         tasks += "  - {name: Equal, period: 20 ms, priority: 5, execution_time: 1 ms}\n"
     kept = {key: lines for key, lines in callbacks.items() if lines}

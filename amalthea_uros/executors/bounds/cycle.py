@@ -13,9 +13,8 @@ An iteration executes the overhead of the executor once. Which part of it comes 
 sleep can be all of it; the time of a cycle with a sleep is the lesser of two bounds: the sleep in the middle of one window, and two
 windows.
 
-If several executors spin in the loop of a thread, a cycle of one of them contains everything else that the loop does: an iteration of each
-of the others with its longest wait, and all sleeps. What the thread waits for without sleeping follows the callbacks of an iteration, and
-counts like their execution.
+If several executors spin in the loop of a thread, a cycle of one of them contains everything else in the loop: an iteration of each of
+the others with its longest wait, and all sleeps. Busy waits follow the callbacks of an iteration, and count like their execution.
 
 A wait answers the heartbeats that are unread, whose number depends on the cycle: the least number that is consistent is the bound
 (`backlog`).
@@ -192,8 +191,8 @@ class Cycle:
         """
         if not heartbeats(self.solved.context.system) or not has_unacknowledged(self.sending, self.solved):
             return 0
-        together = thread_of(self.executor, self.solved.context.system.executors)
-        return max_heartbeats(max(map(longest_wait, together)), self.solved)
+        of_thread = thread_of(self.executor, self.solved.context.system.executors)
+        return max_heartbeats(max(map(longest_wait, of_thread)), self.solved)
 
     @property
     def time_base(self) -> int:
@@ -279,7 +278,7 @@ class Cycle:
 
     def longest_with(self, wait: Time) -> Time | None:
         """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
-        part, suspended, beginning = self._together, self._suspended(wait), self._beginning(wait)
+        part, suspended, beginning = self._of_thread, self._suspended(wait), self._beginning(wait)
         if part.suspension.most is None or suspended is None or self.busy is None or beginning is None:
             return None
         together, resumed = part.suspension.most + suspended, self._resumed(wait)
@@ -289,13 +288,13 @@ class Cycle:
                 slept = (self.executor.loop.period or 0) + SLEEP_RESOLUTION + beginning
                 return None if unslept is None else max(unslept, slept)
             case LoopKind.SLEEPING if self.sleep:
-                found = [] if self.others else [self.sleep + self.busy + beginning]
+                bounds = [] if self.others else [self.sleep + self.busy + beginning]
                 joint = self.processor.time(part.demand, together + self.sleep, part.resumed + 1 + resumed)
-                return min([*found, *([] if joint is None else [joint])], default=None)
+                return min([*bounds, *([] if joint is None else [joint])], default=None)
         return self.processor.time(part.demand, together, part.resumed + resumed)
 
     @cached_property
-    def _together(self) -> IterationPart:
+    def _of_thread(self) -> IterationPart:
         """The longest iteration, and those of the other executors in the loop, with their waits."""
         parts = (self.whole, *self.others)
         return IterationPart(
@@ -362,7 +361,7 @@ class Cycle:
 
     @property
     def _overhead(self) -> Interval[Time]:
-        """What every iteration executes."""
+        """The demand of every iteration, without callbacks."""
         spin, after = self.demand.spin, self.demand.after
         return Interval(spin.lower + after.lower, spin.upper + after.upper)
 
@@ -396,8 +395,8 @@ class Cycle:
     @property
     def unbounded(self) -> str:
         """Why the longest cycle is not bounded."""
-        if self.session_wait is None or self._together.suspension.most is None:
-            why = self._together.suspension.why or "the time for which other executors of its session keep it is unknown"
+        if self.session_wait is None or self._of_thread.suspension.most is None:
+            why = self._of_thread.suspension.why or "the time for which other executors of its session keep it is unknown"
             return f"an iteration can be suspended without a bound: {why}"
         if self.writing.most is None:
             return f"a wait has no bound: {self.writing.why}"

@@ -108,7 +108,7 @@ def others_of_thread(executor: Executor, executors: Sequence[Executor]) -> list[
 def why_unknown(executor: Executor, executors: Iterable[Executor]) -> str:
     """Why the time of the loop of an executor is unknown; "" if it is not.
 
-    What a thread does besides, such as publishing outside of callbacks, uses the session and its buffers, as all that share them notice.
+    A publication outside of callbacks, or a ping, uses the session and its buffers, which delays all executors that share them.
     """
     return next((each.unknown for each in sharing(executor, executors) if each.unknown), "")
 

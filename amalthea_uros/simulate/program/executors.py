@@ -70,10 +70,10 @@ class ExecutorRecords:
         sets, sets_end = image.items(
             [image.items([*(handles[name] for name in each), 0])[0] for each in _trigger_sets(executor)]
         )
-        together = thread_of(executor, resources.context.system.executors)
-        following = together[(together.index(executor) + 1) % len(together)]
+        of_thread = thread_of(executor, resources.context.system.executors)
+        following = of_thread[(of_thread.index(executor) + 1) % len(of_thread)]
         # The iteration of the last one is followed by that of the first.
-        begin = self._begin(executor) if executor is together[-1] else layout.NEVER
+        begin = self._begin(executor) if executor is of_thread[-1] else layout.NEVER
         fields = {
             layout.READER_PROCESS: resources.processes[executor.task],
             layout.INBOX: self.messages.inboxes[executor.name],

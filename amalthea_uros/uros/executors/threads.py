@@ -1,8 +1,8 @@
 """The loop of a thread as a list: which executors spin in it, what it sleeps and waits for, and what nobody knows the time of.
 
 What each executor of a thread needs to know: the sleeps of the whole loop, which pace it; those between its spin and the next one; and
-what the thread waits for without sleeping there. A list that is rotated describes the same loop, so what stands before the first spin
-belongs to the last one.
+what the thread waits for without sleeping there. A list that is rotated describes the same loop, so items before the first spin
+follow the last one.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ class ThreadItems:
 
     @property
     def unknown(self) -> str:
-        """What the thread does besides, of which nobody knows how long it takes; "" for nothing."""
-        found = _sent_outside(self.items)
-        return f"its loop also {found}, which takes an unknown time" if found else ""
+        """Why the time of the loop is unknown; "" if it is not."""
+        sent = _sent_outside(self.items)
+        return f"its loop also {sent}, which takes an unknown time" if sent else ""
 
     def loop(self, name: str, os: OsSection) -> ThreadLoop:
         """The loop as one of its executors has it: with all sleeps."""
@@ -68,7 +68,7 @@ class ThreadItems:
         return ThreadPlace(thread=self.owner, sleep=most, sleep_early=most - sum(each.least for each in sleeps))
 
     def busy_wait(self, name: str, os: OsSection) -> Boundaries | None:
-        """What the thread waits for without sleeping, after the spin of an executor; None if there is nothing."""
+        """The time that the thread waits busily after the spin of an executor; None if there is nothing."""
         waits = [item.busy_wait for item in self._after(name) if item.busy_wait]
         return Boundaries(lower=sum(waits), upper=sum(_latest(each, os) for each in waits)) if waits else None
 
@@ -83,7 +83,7 @@ class ThreadItems:
 
 
 def why_unknown_time(name: str, middleware: Middleware) -> str:
-    """Why the time of the loop of an executor is unknown: what its thread, or another one, sends outside of callbacks; "" if it is not."""
+    """Why the time of the loop of an executor is unknown: of what is sent outside of callbacks; "" if it is not."""
     items = thread_items(name, middleware)
     for each in middleware.stated_executors:
         if each.loop is not None and each.loop.only_sends:
@@ -113,9 +113,9 @@ def thread_items(name: str, middleware: Middleware) -> ThreadItems | None:
     for each in middleware.stated_executors:
         items = each.loop.items if each.loop is not None else None
         if items is not None:
-            found = ThreadItems(each.name, tuple(items))
-            if name in found.executors:
-                return found
+            thread = ThreadItems(each.name, tuple(items))
+            if name in thread.executors:
+                return thread
     return None
 
 

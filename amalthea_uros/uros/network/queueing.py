@@ -125,7 +125,7 @@ class Queueing:
         )
 
     def outside(self, executor: ExecutorSection, reason: str) -> Queued:
-        """What the loop of a thread sends outside of callbacks."""
+        """The messages that the loop of a thread sends outside of callbacks."""
         name, length = f"{executor.name}_outside_callbacks", 63 if isinstance(self.line.section, Can | CanFd) else _LONGEST_PART
         return Queued(
             transmission=Transmission(
