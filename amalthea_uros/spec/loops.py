@@ -68,7 +68,7 @@ class LoopSection(Shorthand):
     timeout: Duration | None = None
     """Timeout of the executor, with `spin_period`; default: that of the middleware, 1 s for rclc."""
     items: Annotated[list[LoopItem], Field(min_length=1)] | None = None
-    """What the thread does again and again, in this order: `rclc_executor_spin_some` of this executor once, of further ones, and more."""
+    """What the thread does again and again, in this order: `rclc_executor_spin_some` of this executor once, and more."""
 
     @model_validator(mode="after")
     def _is_one_of_four(self) -> Self:
