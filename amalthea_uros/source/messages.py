@@ -60,7 +60,7 @@ def length_of(kind: MessageType, own: Mapping[str, str] = MappingProxyType({})) 
     ----------
     own : the types of the fields of types that the application defines
     """
-    types = _types() | own
+    types = _types() | dict(own)
     try:
         return _after(Length(0, True), str(kind), types, ())
     except KeyError:

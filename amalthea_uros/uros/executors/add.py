@@ -11,6 +11,7 @@ from amalthea_uros.perf.executors import Executor, Handle, LoopKind, ThreadLoop,
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.spec import executors as spec
+from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.os import OsSection
 from amalthea_uros.units import SECOND, Time, down, ticks_of_time, up
 from amalthea_uros.uros.application.callbacks import Callback
@@ -137,7 +138,7 @@ def _executor(
     )
 
 
-def _loop(section: spec.LoopSection, waiting: WaitBehaviour, os: OsSection) -> ThreadLoop:
+def _loop(section: LoopSection, waiting: WaitBehaviour, os: OsSection) -> ThreadLoop:
     """The loop that a section describes, on an operating system that counts sleeps in ticks.
 
     See ros2/rclc `rclc/src/rclc/executor.c`: `rclc_executor_spin` is an endless `spin_some`; `rclc_executor_spin_period` calls

@@ -67,7 +67,7 @@ class ThreadItems:
         most = sum(each.most for each in sleeps)
         return ThreadPlace(thread=self.owner, sleep=most, sleep_early=most - sum(each.least for each in sleeps))
 
-    def busy_wait(self, name: str, os: OsSection) -> Boundaries | None:
+    def busy_wait(self, name: str, os: OsSection) -> Boundaries[Time] | None:
         """The time that the thread waits busily after the spin of an executor; None if there is nothing."""
         waits = [item.busy_wait for item in self._after(name) if item.busy_wait]
         return Boundaries(lower=sum(waits), upper=sum(_latest(each, os) for each in waits)) if waits else None
