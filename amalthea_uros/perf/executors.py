@@ -163,6 +163,22 @@ class WaitBehaviour(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ThreadPlace(Brief):
+    """The place of an executor in a loop that several executors share: they spin one after the other, in the order of the system.
+
+    Attributes
+    ----------
+    thread : a name that is the same for all of them
+    sleep : maximum time that the thread sleeps between an iteration of this executor and that of the next one
+    sleep_early : time by which that can be shorter
+    """
+
+    thread: str
+    sleep: Time = 0
+    sleep_early: Time = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Executor(Named):
     """An executor that spins in a loop.
 
@@ -171,6 +187,9 @@ class Executor(Named):
     task : that executes its iterations, one per job
     spin : the runnable that every iteration begins with
     poll : the runnable that stands for iterations without a callback, from the end of a wait until a timer is due; None for none
+    busy_wait : the runnable in which its thread waits without sleeping, after each iteration; None for none
+    place : in the loop of a thread that several executors share, whose `loop` then has all sleeps of the thread; None if it has its own
+    unknown : what its thread does besides, so that nobody knows how long the loop takes; "" for nothing
     handles : in the order in which they were added, which is that in which callbacks are called
     takes_first : whether all messages of an iteration are taken before the first callback (LET semantics)
     session : executors with the same one, of a middleware for several threads, exclude each other while they wait or send
@@ -185,3 +204,6 @@ class Executor(Named):
     waiting: WaitBehaviour = field(default_factory=WaitBehaviour)
     session: str | None = None
     poll: str | None = None
+    busy_wait: str | None = None
+    place: ThreadPlace | None = None
+    unknown: str = ""

@@ -159,6 +159,14 @@ class System:
         """The executors that spin in loops, by the tasks that execute their rounds."""
         return {executor.task: executor for executor in self.executors}
 
+    def tasks_of_thread(self, task: str) -> frozenset[str]:
+        """The tasks of the executors that spin in the same thread as that of a task, itself included."""
+        own = self.executor_of_task.get(task)
+        if own is None or own.place is None:
+            return frozenset((task,))
+        thread = own.place.thread
+        return frozenset(each.task for each in self.executors if each.place is not None and each.place.thread == thread)
+
     @cached_property
     def transmissions(self) -> Mapping[str, Transmission]:
         """The messages on wires, by the tasks that stand for them."""

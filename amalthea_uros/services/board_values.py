@@ -7,8 +7,8 @@ from pathlib import Path
 
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.executors import LoopSection
 from amalthea_uros.spec.hardware import HardwareSection
+from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.transports import TransportSection
 from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND, Time, frequency_text, time_text

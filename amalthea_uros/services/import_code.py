@@ -50,13 +50,13 @@ def import_code(
     from amalthea_uros.source.description import GAP, description_text
     from amalthea_uros.source.files import read_sources
     from amalthea_uros.source.read import read_facts
-    from amalthea_uros.spec.middleware import PoolSizes
+    from amalthea_uros.spec.middleware import option_units
 
     given = [Path(paths)] if isinstance(paths, str | PathLike) else [Path(path) for path in paths]
     file = None if target is None else Path(target)
     facts = read_facts(read_sources(given))
     name = given[0].resolve().stem if given else "app"
-    text = description_text(facts, name.strip() or "app", board, PoolSizes.model_fields)
+    text = description_text(facts, name.strip() or "app", board, option_units())
     if file is not None:
         save_new({file: text}, force=force)
     gaps = sum(line.partition(" #")[0].count(f": {GAP}") for line in text.splitlines())

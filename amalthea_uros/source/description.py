@@ -4,14 +4,26 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind, Thread
+from amalthea_uros.source.facts import (
+    CodeEntity,
+    CodeEntityKind,
+    CodeExecutor,
+    CodeFacts,
+    CodeHandle,
+    CodeLoopItem,
+    CodeLoopKind,
+    CodeSender,
+    SpinKind,
+    Thread,
+)
 from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.names import CodeNames
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.source.platform import CUSTOM
+from amalthea_uros.units import SECOND, Time, time_text
 
 GAP = "TODO"
 _PLAIN = re.compile(r"[A-Za-z/][\w/.-]*", re.ASCII)
@@ -25,16 +37,17 @@ _LISTS = {
     CodeEntityKind.ACTION_SERVER: "action_servers",
     CodeEntityKind.ACTION_CLIENT: "action_clients",
 }
+_ON, _OFF = ("on", "1", "true"), ("off", "0", "false")
 _NOT_ARRIVING = (CodeEntityKind.TIMER, CodeEntityKind.GUARD_CONDITION)
 
 
-def description_text(facts: CodeFacts, name: str, board: str | None, options: Collection[str]) -> str:
+def description_text(facts: CodeFacts, name: str, board: str | None, options: Mapping[str, str]) -> str:
     """The description.
 
     Parameters
     ----------
     board : the name of a platform, if it is known
-    options : build options of the middleware that a description can have
+    options : build options of the middleware that a description can have, each with its unit: "B", "ms", "number", "switch", "word"
     """
     names = CodeNames(facts)
     lines = [
@@ -42,7 +55,7 @@ def description_text(facts: CodeFacts, name: str, board: str | None, options: Co
         "amuros: 1",
         f"name: {quoted(name)}",
         *_hardware(board),
-        *([f"os: {{rtos: {facts.rtos}}}"] if facts.rtos else []),
+        *_os(facts),
         "middleware:",
         *(f"  {line}" for line in _middleware(facts, names, options)),
         "application:",
@@ -77,25 +90,57 @@ def _hardware(board: str | None) -> Iterator[str]:
     yield f"  frequency: {GAP} # clock of the cores"
 
 
-def _middleware(facts: CodeFacts, names: CodeNames, options: Collection[str]) -> Iterator[str]:
+def _os(facts: CodeFacts) -> Iterator[str]:
+    if facts.rtos and facts.tick_rate is not None:
+        tick = Time(int(SECOND / facts.tick_rate))
+        default = "" if facts.ticks_are_stated else " # the default of the port, if its configuration says nothing else"
+        yield f"os: {{rtos: {facts.rtos}, tick: {time_text(tick)}}}{default}"
+    elif facts.rtos:
+        yield f"os: {{rtos: {facts.rtos}}}"
+
+
+def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) -> Iterator[str]:
     executors = list(facts.executors.values())
-    if len(executors) == 1:
+    if len(executors) == 1 and not facts.senders:
         yield "executor:"
         yield from (f"  {line}" for line in _executor(executors[0], facts, names))
-    elif executors:
+    elif executors or facts.senders:
         yield "executors:"
         for executor in executors:
             yield from _item(_executor(executor, facts, names), "  ")
+        for sender, name in zip(facts.senders, names.senders, strict=True):
+            yield from _item(_sender(sender, name, names), "  ")
     else:
         yield f"executor: {GAP} # none is initialised in these files"
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
     if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
         yield f"multithread: true{_at(option.place)}"
     yield from _transport(facts)
-    known = [option for name, option in facts.options.items() if name in options and option.value.isdecimal()]
-    if known:
+    limits = [*_built_transport(facts), *_limits(facts, options)]
+    if limits:
         yield "limits:"
-        yield from (f"  {option.name}: {option.value}{_at(option.place)}" for option in known)
+        yield from (f"  {line}" for line in limits)
+
+
+def _built_transport(facts: CodeFacts) -> Iterator[str]:
+    """The transport of the build, where the description would take that of the wire for it."""
+    is_udp = facts.transport is not None and facts.transport.key == "udp"
+    if is_udp and facts.port in CUSTOM and "RMW_UXRCE_TRANSPORT" not in facts.options:
+        yield f"RMW_UXRCE_TRANSPORT: custom # {facts.port} sends by functions of its own"
+
+
+def _limits(facts: CodeFacts, options: Mapping[str, str]) -> Iterator[str]:
+    """Build options as they are stated, as far as a description can have them."""
+    for name, option in facts.options.items():
+        value = option.value.lower()
+        match options.get(name):
+            case "switch" if value in (*_ON, *_OFF):
+                yield f"{name}: {str(value in _ON).lower()}{_at(option.place)}"
+            case "word" if value.isalpha():
+                yield f"{name}: {value}{_at(option.place)}"
+            case "number" | "B" | "ms" as unit if value.removeprefix("-").isdecimal():
+                text = value if unit == "number" or (unit == "ms" and value == "0") else f"{value} {unit}"
+                yield f"{name}: {text}{_at(option.place)}"
 
 
 def _transport(facts: CodeFacts) -> Iterator[str]:
@@ -113,10 +158,13 @@ def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Ite
     yield f"name: {quoted(names.executors[executor.key])}{_at(executor.place)}"
     if executor.max_handles:
         yield f"max_handles: {executor.max_handles}{_at(executor.place)}"
-    if executor.thread is not None:
+    if executor.thread is not None and not _is_of_other_loop(executor):
         yield from _thread(executor.thread)
-    yield from _loop(executor)
+    if not _is_of_other_loop(executor):
+        yield from _loop(executor, names)
     yield "callbacks: in-executor"
+    if not any(handle.entity in facts.entities for handle in executor.handles):
+        yield f"order: {GAP} # nothing that is added to it is understood: describe its callbacks under the nodes"
     order = [names.handles[handle.entity] for handle in executor.handles if handle.entity in names.handles]
     if len(order) > 1:
         yield f"order: [{', '.join(map(quoted, order))}]"
@@ -124,6 +172,14 @@ def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Ite
         yield f"semantics: {executor.semantics}"
     yield from _trigger(executor, names)
     yield f"execution_time: {{base: {GAP}, per_message: {GAP}}} # of a round, and of taking a message"
+
+
+def _sender(sender: CodeSender, name: str, names: CodeNames) -> Iterator[str]:
+    yield f"name: {quoted(name)}{_at(sender.place, 'publishes outside of callbacks')}"
+    if sender.thread is not None:
+        yield from _thread(sender.thread)
+    yield "loop:"
+    yield from (f"  - {_loop_item(item, None, names)}" for item in sender.items)
 
 
 def _thread(thread: Thread) -> Iterator[str]:
@@ -134,7 +190,12 @@ def _thread(thread: Thread) -> Iterator[str]:
         yield f"core: {GAP}{_at(thread.place, f'pinned to core {thread.core}')}"
 
 
-def _loop(executor: CodeExecutor) -> Iterator[str]:
+def _is_of_other_loop(executor: CodeExecutor) -> bool:
+    """Whether the description has its loop at another executor, the first one that spins in it."""
+    return bool(executor.spins) and executor.spins[0].executors[:1] not in ((), (executor.key,))
+
+
+def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
     if not executor.spins:
         yield f"loop: {GAP} # no call lets it spin"
         return
@@ -144,14 +205,28 @@ def _loop(executor: CodeExecutor) -> Iterator[str]:
         time = Time(10**12) if is_default else executor.timeout
         yield f"loop: {{spin: {_time(time)}}}{_at(spin.place, 'the default timeout' if is_default else '')}"
         return
+    if {item.kind for item in spin.items} - {CodeLoopKind.SPIN, CodeLoopKind.SLEEP} or len(spin.executors) > 1:
+        yield "loop:"
+        yield from (f"  - {_loop_item(item, executor, names)}" for item in spin.items)
+        return
     parts = [f"{spin.kind}: {_time(spin.time)}"]
     if spin.kind is SpinKind.SOME:
         sleep = spin.sleep if spin.is_in_loop else None
         parts += [f"sleep: {_time(sleep)}"] if sleep != 0 else []
     elif executor.timeout_place is not None:
         parts.append(f"timeout: {_time(executor.timeout)}")
-    others = ", ".join(f"sleep in line {place.line}" for place in spin.sleeps)
+    others = ", ".join(f"sleep in line {item.place.line}" for item in spin.items if item.kind is CodeLoopKind.SLEEP)
     yield f"loop: {{{', '.join(parts)}}}{_at(spin.place, others)}"
+
+
+def _loop_item(item: CodeLoopItem, owner: CodeExecutor | None, names: CodeNames) -> str:
+    comment = _at(item.place, item.note)
+    if item.kind is CodeLoopKind.PUBLISH:
+        topic = names.topics.get(item.of)
+        return f"{item.kind}: {GAP if topic is None else f'[{quoted(topic)}]'}{comment}"
+    if item.kind is CodeLoopKind.SPIN and (owner is None or item.of != owner.key):
+        return f"{{{item.kind}: {_time(item.time)}, executor: {quoted(names.executors[item.of])}}}{comment}"
+    return f"{item.kind}: {_time(item.time)}{comment}"
 
 
 def _trigger(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
@@ -190,7 +265,7 @@ def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) 
     if publishers:
         yield "publishers:"
         for publisher in publishers:
-            yield from _item(_publisher(publisher), "  ")
+            yield from _item(_publisher(publisher, facts), "  ")
     handles = names.handle_by_entity
     for kind, key in _LISTS.items():
         entities = [each for each in own if each.kind is kind and each.key in handles]
@@ -201,16 +276,16 @@ def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) 
     yield from _servers(node, own, facts, names)
 
 
-def _publisher(entity: CodeEntity) -> Iterator[str]:
+def _publisher(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
     yield f"topic: {quoted(entity.name) if entity.name else GAP}{_at(entity.place)}"
-    yield _size("message_size", entity.type)
+    yield _size("message_size", entity.type, facts)
     yield f"reliability: {entity.reliability or GAP}"
 
 
-def _size(key: str, kind: MessageType | None) -> str:
+def _size(key: str, kind: MessageType | None, facts: CodeFacts) -> str:
     if kind is None:
         return f"{key}: {GAP}"
-    length = length_of(kind)
+    length = length_of(kind, facts.types)
     if length is None:
         return f"{key}: {GAP}{_at(None, str(kind))}"
     if not length.is_fixed:
@@ -220,7 +295,7 @@ def _size(key: str, kind: MessageType | None) -> str:
 
 def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     yield f"name: {quoted(names.handles[entity.key])}{_at(handle.place)}"
-    yield from _content(entity)
+    yield from _content(entity, facts)
     if entity.kind is CodeEntityKind.TIMER:
         yield f"period: {_time(entity.period)}{_at(entity.place)}"
     elif entity.kind not in _NOT_ARRIVING:
@@ -233,18 +308,18 @@ def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: Code
     yield from _outputs(entity, handle, facts, names)
 
 
-def _content(entity: CodeEntity) -> Iterator[str]:
+def _content(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
     named = quoted(entity.name) if entity.name else GAP
     match entity.kind:
         case CodeEntityKind.SUBSCRIPTION:
             yield f"topic: {named}{_at(entity.place)}"
-            yield _size("message_size", entity.type)
+            yield _size("message_size", entity.type, facts)
             yield f"reliability: {entity.reliability or GAP}"
         case CodeEntityKind.SERVICE | CodeEntityKind.CLIENT:
             if entity.kind is CodeEntityKind.CLIENT:
                 yield f"service: {named}{_at(entity.place)}"
             for key, suffix in (("request_size", "Request"), ("response_size", "Response")):
-                yield _size(key, entity.type.part(suffix) if entity.type is not None else None)
+                yield _size(key, entity.type.part(suffix) if entity.type is not None else None, facts)
         case CodeEntityKind.ACTION_SERVER | CodeEntityKind.ACTION_CLIENT:
             if entity.kind is CodeEntityKind.ACTION_CLIENT:
                 yield f"action: {named}{_at(entity.place)}"

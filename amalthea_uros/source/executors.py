@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Callable, Mapping
 
 from amalthea_uros.source.entities import callback_of
 from amalthea_uros.source.facts import (
@@ -13,14 +12,12 @@ from amalthea_uros.source.facts import (
     CodeFacts,
     CodeHandle,
     CodeTrigger,
-    Spin,
     SpinKind,
 )
-from amalthea_uros.source.ports import SLEEPS, sleep_time
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time
 
-_NANOSECOND = 1000
+NANOSECOND = 1000
 _ADD = "rclc_executor_add_"
 #: What is added -> its kind, and the positions of its callbacks.
 _ADDED: Mapping[str, tuple[CodeEntityKind, tuple[int, ...]]] = {
@@ -40,7 +37,7 @@ _ADDED: Mapping[str, tuple[CodeEntityKind, tuple[int, ...]]] = {
 }
 #: RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES of ros2/rclc rclc_parameter/rclc_parameter.h.
 _PARAMETER_SERVER_HANDLES = 6
-_SPINS = {
+SPIN_KINDS = {
     "rclc_executor_spin": SpinKind.ENDLESS,
     "rclc_executor_spin_some": SpinKind.SOME,
     "rclc_executor_spin_period": SpinKind.PERIOD,
@@ -67,13 +64,14 @@ def _init(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
         )
 
 
-def _executor(facts: CodeFacts, call: FunctionCall, index: int = 0) -> CodeExecutor | None:
+def executor_of(facts: CodeFacts, call: FunctionCall, index: int = 0) -> CodeExecutor | None:
+    """The executor that an argument of a call is; None if it was not initialised in these sources."""
     variable = call.argument(index)
     return facts.executors.get(variable.key) if variable is not None else None
 
 
 def _add(facts: CodeFacts, call: FunctionCall, walk: CodeWalk) -> None:
-    executor, entity = _executor(facts, call), call.argument(1)
+    executor, entity = executor_of(facts, call), call.argument(1)
     if executor is None or entity is None:
         return
     kind, positions = _ADDED[call.name.removeprefix(_ADD)]
@@ -82,13 +80,14 @@ def _add(facts: CodeFacts, call: FunctionCall, walk: CodeWalk) -> None:
         given = call.argument(position)
         callback = callback_of(given, walk) if given is not None else None
         callbacks += [callback] if callback is not None else []
-    last = call.argument(-1)
+    last, message = call.argument(-1), call.argument(2)
     handle = CodeHandle(
         kind=kind,
         entity=entity.key,
         callbacks=tuple(callbacks),
         place=call.place,
         count=_PARAMETER_SERVER_HANDLES if kind is CodeEntityKind.PARAMETER_SERVER else 1,
+        message=message.core.text if message is not None and kind is CodeEntityKind.SUBSCRIPTION else "",
         always=kind is CodeEntityKind.SUBSCRIPTION and last is not None and last.resolved.text == "ALWAYS",
     )
     if not any(each.entity == handle.entity and each.kind is kind for each in executor.handles):
@@ -96,7 +95,7 @@ def _add(facts: CodeFacts, call: FunctionCall, walk: CodeWalk) -> None:
 
 
 def _add_lifecycle(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
-    executor = _executor(facts, call, 1)
+    executor = executor_of(facts, call, 1)
     if executor is not None:
         handle = CodeHandle(kind=CodeEntityKind.LIFECYCLE, entity=call.name, callbacks=(), place=call.place)
         if all(each.entity != call.name for each in executor.handles):
@@ -104,15 +103,15 @@ def _add_lifecycle(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> Non
 
 
 def _timeout(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
-    executor, given = _executor(facts, call), call.argument(1)
+    executor, given = executor_of(facts, call), call.argument(1)
     if executor is not None and given is not None:
         number = given.number
-        executor.timeout = Time(number * _NANOSECOND) if number is not None and number > 0 else None
+        executor.timeout = Time(number * NANOSECOND) if number is not None and number > 0 else None
         executor.timeout_place = call.place
 
 
 def _trigger(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
-    executor, function, target = _executor(facts, call), call.argument(1), call.argument(2)
+    executor, function, target = executor_of(facts, call), call.argument(1), call.argument(2)
     if executor is not None and function is not None:
         name = function.name.removeprefix(_TRIGGER_PREFIX)
         is_custom = name not in _BUILT_IN
@@ -122,7 +121,7 @@ def _trigger(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
 
 
 def _semantics(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
-    executor, given = _executor(facts, call), call.argument(1)
+    executor, given = executor_of(facts, call), call.argument(1)
     if executor is not None and given is not None and given.resolved.text in ("LET", "RCLCPP_EXECUTOR"):
         executor.semantics = "LET" if given.resolved.text == "LET" else "ROS"
 
@@ -136,34 +135,4 @@ ACTIONS: Mapping[str, Action] = {
     **dict.fromkeys((_ADD + name for name in _ADDED), _add),
     **dict.fromkeys(_LIFECYCLE, _add_lifecycle),
 }
-SPINS = frozenset(_SPINS)
-
-
-def note_spins(facts: CodeFacts, calls: Sequence[FunctionCall], tick_rate: Fraction | None) -> None:
-    """Add to each executor how it spins, with the sleeps in the same loop."""
-    for call in calls:
-        if call.name in _SPINS and (executor := _executor(facts, call)) is not None:
-            if any(spin.place == call.place for spin in executor.spins):
-                continue
-            executor.spins.append(_spin(call, calls, tick_rate))
-
-
-def _spin(call: FunctionCall, calls: Sequence[FunctionCall], tick_rate: Fraction | None) -> Spin:
-    kind, given = _SPINS[call.name], call.argument(1)
-    number = given.number if given is not None else None
-    time = Time(number * _NANOSECOND) if number is not None and number >= 0 else None
-    is_loop = call.root is not None and call.root.name == "loop"
-    beside = [each for each in calls if each.name in SLEEPS and each.root is call.root and each.loops == call.loops]
-    # A sleep before an endless loop, or one in setup(), is not part of the round.
-    sleeps = beside if call.loops or is_loop else []
-    durations = [
-        sleep_time(each, tick_rate) if each.conditions == call.conditions[: len(each.conditions)] else None for each in sleeps
-    ]
-    return Spin(
-        kind=kind,
-        time=time,
-        place=call.place,
-        sleep=None if None in durations else Time(sum(filter(None, durations))),
-        sleeps=tuple(each.place for each in sleeps),
-        is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or bool(call.loops) or is_loop,
-    )
+SPINS = frozenset(SPIN_KINDS)

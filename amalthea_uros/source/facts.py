@@ -82,6 +82,7 @@ class CodeHandle:
     callbacks : those that were given when it was added
     count : number of handles that it takes
     always : whether its callback is called without a message, too
+    message : of a subscription, the variable that its messages are written to, as the code calls it
     """
 
     kind: CodeEntityKind
@@ -90,6 +91,7 @@ class CodeHandle:
     place: Location
     count: int = 1
     always: bool = False
+    message: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,6 +121,35 @@ class SpinKind(StrEnum):
     ENDLESS = "spin"
 
 
+class CodeLoopKind(StrEnum):
+    """The kind of an item of a loop, as `app.yaml` calls it."""
+
+    SPIN = "spin_some"
+    SLEEP = "sleep"
+    BUSY_WAIT = "busy_wait"
+    PUBLISH = "publish"
+    PING = "ping"
+    SYNC = "sync"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeLoopItem:
+    """A part of the loop of a thread.
+
+    Attributes
+    ----------
+    time : timeout, or how long it waits; None if it is not constant, or does not always happen
+    of : key of the executor that spins, or of the publisher
+    note : what to know about it
+    """
+
+    kind: CodeLoopKind
+    time: Time | None
+    place: Location
+    of: str = ""
+    note: str = ""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spin:
     """A call that lets an executor spin.
@@ -126,17 +157,41 @@ class Spin:
     Attributes
     ----------
     time : timeout or period; None if it is not constant
-    sleep : what the thread sleeps in the same loop; None if that is not constant
-    sleeps : where it sleeps
+    items : everything in the same loop, in order, if it is `spin_some` in one
     is_in_loop : whether it is repeated
     """
 
     kind: SpinKind
     time: Time | None
     place: Location
-    sleep: Time | None
-    sleeps: tuple[Location, ...]
+    items: tuple[CodeLoopItem, ...]
     is_in_loop: bool
+
+    @property
+    def sleep(self) -> Time | None:
+        """What the thread sleeps, or waits busily, in the same loop; None if that is not constant."""
+        times = [item.time for item in self.items if item.kind in (CodeLoopKind.SLEEP, CodeLoopKind.BUSY_WAIT)]
+        return None if None in times else Time(sum(filter(None, times)))
+
+    @property
+    def executors(self) -> tuple[str, ...]:
+        """Keys of the executors that spin in the same loop, in order, each once."""
+        return tuple(dict.fromkeys(item.of for item in self.items if item.kind is CodeLoopKind.SPIN))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeSender:
+    """A loop that sends outside of callbacks, and in which no executor spins.
+
+    Attributes
+    ----------
+    name : of its thread, else of the function that it is in
+    """
+
+    name: str
+    thread: Thread | None
+    items: tuple[CodeLoopItem, ...]
+    place: Location
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -210,17 +265,24 @@ class CodeFacts:
     Attributes
     ----------
     publishes : keys of publishers and clients by the functions that use them, with the places
+    types : those that the application defines, with the types of their fields
     rtos : the operating system, "" if unknown
+    port : how micro-ROS was brought to the controller, "" if unknown
     tick_rate : its ticks per second
+    ticks_are_stated : whether that is more than a default of the port, which the build may change
     """
 
     entities: dict[str, CodeEntity] = field(default_factory=dict)
     executors: dict[str, CodeExecutor] = field(default_factory=dict)
+    senders: list[CodeSender] = field(default_factory=list)
     publishes: dict[str, dict[str, Location]] = field(default_factory=dict)
     transport: CodeTransport | None = None
+    types: dict[str, str] = field(default_factory=dict)
     options: dict[str, CodeOption] = field(default_factory=dict)
     rtos: str = ""
+    port: str = ""
     tick_rate: Fraction | None = None
+    ticks_are_stated: bool = False
     findings: list[Finding] = field(default_factory=list)
 
     def of_kind(self, kind: CodeEntityKind) -> list[CodeEntity]:

@@ -17,6 +17,10 @@ _C = (".c",)
 _CPP = (".h", ".hpp", ".hh", ".cpp", ".cc", ".cxx", ".ino")
 SUFFIXES = (*_C, *_CPP)
 META = ".meta"
+#: Files that define messages and services of an application: `package/msg/Name.msg`.
+INTERFACES = (".msg", ".srv")
+#: Files of build systems that say something about the controller, by their names.
+BUILD_FILES = ("sdkconfig", "sdkconfig.defaults", "platformio.ini", "prj.conf")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +54,16 @@ class Sources:
     Attributes
     ----------
     meta : files with build options of colcon
+    build : other files of build systems
+    interfaces : definitions of messages and services
     findings : files that cannot be read
     """
 
     code: tuple[SourceFile, ...]
     meta: tuple[SourceFile, ...]
     findings: tuple[Finding, ...]
+    build: tuple[SourceFile, ...] = ()
+    interfaces: tuple[SourceFile, ...] = ()
 
 
 def read_sources(paths: Iterable[Path]) -> Sources:
@@ -67,6 +75,8 @@ def read_sources(paths: Iterable[Path]) -> Sources:
     """
     code: list[SourceFile] = []
     meta: list[SourceFile] = []
+    build: list[SourceFile] = []
+    interfaces: list[SourceFile] = []
     findings: list[Finding] = []
     size = 0
     for path in _found(paths):
@@ -81,11 +91,15 @@ def read_sources(paths: Iterable[Path]) -> Sources:
         size += len(text)
         if size > SOURCES_SIZE:
             raise ReadError([_unreadable(path, "there is too much source code", f"Give only the application. {ADVICE}")])
-        (meta if path.suffix == META else code).append(SourceFile(path, text))
+        if path.suffix in INTERFACES:
+            interfaces.append(SourceFile(path, text))
+            continue
+        kind = build if path.name in BUILD_FILES else meta if path.suffix == META else code
+        kind.append(SourceFile(path, text))
     if not code:
         advice = f"Give C or C++ files ({', '.join(SUFFIXES)}) or folders with them."
         raise ReadError(findings or [Finding("IMP002", Severity.ERROR, "there is no source code", None, advice)])
-    return Sources(tuple(code), tuple(meta), tuple(findings))
+    return Sources(tuple(code), tuple(meta), tuple(findings), tuple(build), tuple(interfaces))
 
 
 def _found(paths: Iterable[Path]) -> list[Path]:
@@ -104,7 +118,7 @@ def _in_folder(folder: Path) -> Iterator[Path]:
     for place, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in names:
-            if name.lower().endswith((*SUFFIXES, META)) and not name.startswith("."):
+            if (name.lower().endswith((*SUFFIXES, META, *INTERFACES)) or name in BUILD_FILES) and not name.startswith("."):
                 path = Path(place, name)
                 if not path.is_symlink():
                     yield path

@@ -6,16 +6,16 @@ import re
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
+from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated
+from amalthea_uros.source.sleeps import SLEEPS, wait_of
 from amalthea_uros.source.syntax import descendants
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
 
-#: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent.
-_ROUND_TRIPS = ("rmw_uros_ping_agent", "rmw_uros_ping_agent_options", "rmw_uros_sync_session")
 _MILLISECOND = 10**9
 _SECOND = 10**12
 _WITH_HANDLES = (
@@ -38,6 +38,22 @@ _POOLS = {
 }
 
 
+_BASICS = (
+    "RMW_UXRCE_MAX_NODES",
+    "RMW_UXRCE_MAX_PUBLISHERS",
+    "RMW_UXRCE_MAX_SUBSCRIPTIONS",
+    "RMW_UXRCE_MAX_SERVICES",
+    "RMW_UXRCE_MAX_CLIENTS",
+)
+#: Pools that a port is built with, where they are smaller, and how a finding calls that: the .meta files and Kconfig of
+#: micro-ROS/micro_ros_arduino, micro_ros_espidf_component and micro_ros_zephyr_module.
+_OF_PORT = {
+    "arduino": ("in the smallest of its prebuilt libraries", dict(zip(_BASICS, (1, 2, 1, 1, 1), strict=True))),
+    "espidf": ("by default in ESP-IDF", dict(zip(_BASICS, (1, 2, 2, 1, 1), strict=True))),
+    "zephyr": ("by default in Zephyr", dict(zip(_BASICS, (1, 1, 1, 1, 1), strict=True))),
+}
+
+
 def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """The findings about the application itself."""
     yield from _unchecked(walk.calls)
@@ -48,8 +64,10 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
         yield from _waiting(executor)
         yield from _timers(executor, facts)
         yield from _triggers(executor)
+    yield from _sessions(facts)
+    yield from _sleepless(facts, walk)
     yield from _blocking(facts, walk)
-    yield from _pings(walk)
+    yield from _pings(facts, walk)
 
 
 def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
@@ -64,13 +82,16 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
     for name, (default, kinds) in _POOLS.items():
         used = [entity for entity in facts.entities.values() if entity.kind in kinds]
         option = facts.options.get(name)
-        size = int(option.value) if option is not None and option.value.isdecimal() else default
+        by_default, sizes = _OF_PORT.get(facts.port, ("by default", {}))
+        size = int(option.value) if option is not None and option.value.isdecimal() else sizes.get(name, default)
         if len(used) > size:
-            stated = f"in {option.place.path}" if option is not None else "by default"
+            stated = f"in {option.place.path}" if option is not None else by_default if name in sizes else "by default"
             message = f"{counted(len(used), kinds[0].value)} need {name}={len(used)}, which is {size} {stated}"
             if len(kinds) > 1:
                 message = f"the timers and guard conditions need {name}={len(used)}, which is {size} {stated}"
             advice = "Set it in colcon.meta and rebuild libmicroros from scratch."
+            if facts.port == "arduino" and option is None:
+                advice = "Take a board whose library has more, such as ESP32 or Teensy 4 with 10, or build the library anew."
             severity = Severity.ERROR if option is not None else Severity.WARNING
             yield Finding("IMP007", severity, message, used[size].place, advice)
 
@@ -127,7 +148,8 @@ def _waiting(executor: CodeExecutor) -> Iterator[Finding]:
             yield Finding(
                 "IMP010", Severity.WARNING, message, spin.place, "Call rclc_executor_set_timeout with less than the period."
             )
-        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.sleep == 0:
+        is_first = not spin.items or spin.items[0].place == spin.place
+        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.sleep == 0 and is_first:
             message = "the loop does not sleep; with timers only, some versions of the middleware never wait either"
             yield Finding(
                 "IMP018",
@@ -166,25 +188,60 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
         yield Finding("IMP014", Severity.WARNING, message, executor.trigger.place, advice)
 
 
-def _pings(walk: CodeWalk) -> Iterator[Finding]:
+def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    described = _in_loops(facts)
     for call in walk.calls:
-        if call.name in _ROUND_TRIPS and (call.loops or (call.root is not None and call.root.name == "loop")):
+        if call.name in ROUND_TRIPS and is_repeated(call) and call.place not in described:
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
             )
 
 
+def _sessions(facts: CodeFacts) -> Iterator[Finding]:
+    """Threads that use the session of the middleware without a lock: eProsima/Micro-XRCE-DDS-Client CMakeLists.txt."""
+    option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
+    spinning = {
+        executor.thread.place: executor.thread.name for executor in facts.executors.values() if executor.thread is not None
+    }
+    sending = {sender.place: sender.name for sender in facts.senders}
+    names = [*spinning.values(), *sending.values()]
+    if len(names) > 1 and (option is None or option.value.upper() not in ("ON", "1", "TRUE")):
+        place = next(iter(sending or spinning))
+        message = f"{' and '.join(map(repr, names))} use one session of the middleware, which nothing locks in these files"
+        advice = "Build with UCLIENT_PROFILE_MULTITHREAD=ON, or publish in callbacks of the executor."
+        yield Finding("IMP023", Severity.WARNING, message, place, advice)
+
+
+def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    """Calls that seem to sleep, and do not."""
+    for call in walk.calls:
+        if call.name in SLEEPS and (wait := wait_of(call, facts)).note:
+            message = f"'{call.name}' does not sleep here: {wait.note}"
+            yield Finding(
+                "IMP020", Severity.WARNING, message, call.place, "Use a function and a time with which the thread sleeps."
+            )
+
+
+def _in_loops(facts: CodeFacts) -> set[Location]:
+    """Where what the loops of the description have is."""
+    spun = {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
+    return spun | {item.place for sender in facts.senders for item in sender.items}
+
+
 def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     published = {place for places in facts.publishes.values() for place in places.values()}
-    told = set()
+    reported, described = set(), _in_loops(facts)
     for call in walk.calls:
         given = call.argument(0)
         entity = facts.entities.get(given.key) if call.name == "rcl_publish" and given is not None else None
-        if entity is None or call.place in told:
+        if entity is None or call.place in reported:
             continue
-        told.add(call.place)
-        if call.place not in published:
+        reported.add(call.place)
+        if call.place in described:
+            message = f"'{entity.variable}' publishes in a loop, outside of callbacks: how long that takes is unknown"
+            yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
+        elif call.place not in published:
             message = f"'{entity.variable}' publishes outside of callbacks, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Describe it as a timer, or publish in a timer callback."

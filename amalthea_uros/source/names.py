@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.source.facts import CodeFacts, CodeHandle
+from amalthea_uros.source.facts import CodeEntityKind, CodeFacts, CodeHandle
 
 _LONGEST = 150
 
@@ -13,6 +13,8 @@ class CodeNames:
     Attributes
     ----------
     executors : by key
+    senders : those of the loops that only send, in their order
+    topics : of publishers, by key, as far as they are constant
     handles : names of callbacks by the key of what they were added with
     handle_by_entity : the handle of an entity, and the name of its executor
     """
@@ -21,10 +23,12 @@ class CodeNames:
         self._used: set[str] = set()
         self.executors: dict[str, str] = {}
         self.handles: dict[str, str] = {}
+        self.topics = {each.key: each.name for each in facts.of_kind(CodeEntityKind.PUBLISHER) if each.name is not None}
         self.handle_by_entity: dict[str, tuple[CodeHandle, str]] = {}
         for executor in facts.executors.values():
             name = executor.thread.name if executor.thread is not None else executor.variable
             self.executors[executor.key] = self._unique(name, executor.variable)
+        self.senders = [self._unique(each.name, "sender") for each in facts.senders]
         for executor in facts.executors.values():
             for handle in executor.handles:
                 entity = facts.entities.get(handle.entity)

@@ -1,106 +1,19 @@
-"""What functions of operating systems and of ports to boards do: they let a thread sleep, start threads, and set the transport."""
+"""Functions of operating systems and of ports to boards that start threads, or set the transport."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from fractions import Fraction
 from typing import NamedTuple
 
 from amalthea_uros.source.entities import callback_of
 from amalthea_uros.source.facts import CodeTransport, Thread
 from amalthea_uros.source.program import CodeProgram
-from amalthea_uros.source.scope import Expression, called
+from amalthea_uros.source.scope import Expression
 from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
-from amalthea_uros.units import Time
 
 #: In picoseconds.
 MICROSECOND, MILLISECOND, SECOND = 10**6, 10**9, 10**12
-
-#: Function -> unit of its only argument.
-_UNITS = {
-    **dict.fromkeys(("usleep", "delayMicroseconds", "sleep_us", "k_usleep", "esp_rom_delay_us"), MICROSECOND),
-    **dict.fromkeys(("delay", "HAL_Delay", "sleep_ms", "k_msleep"), MILLISECOND),
-    "sleep": SECOND,
-}
-#: Those whose argument is a number of ticks, or is made of a time by a macro.
-_TICKS = ("vTaskDelay", "osDelay")
-#: Those whose duration depends on when they are called.
-_UNTIL = (
-    "vTaskDelayUntil",
-    "xTaskDelayUntil",
-    "osDelayUntil",
-    "k_sleep",
-    "sleep_for",
-    "this_thread::sleep_for",
-    "nanosleep",
-    "sleep_until",
-)
-
-SLEEPS = frozenset({*_UNITS, *_TICKS, *_UNTIL})
-
-#: Macros and constructors of durations -> unit of their argument.
-_DURATIONS = {
-    **dict.fromkeys(("K_MSEC", "pdMS_TO_TICKS", "milliseconds", "K_TIMEOUT_MS"), MILLISECOND),
-    **dict.fromkeys(("K_USEC", "microseconds"), MICROSECOND),
-    **dict.fromkeys(("K_SECONDS", "seconds"), SECOND),
-}
-#: What milliseconds are divided by to make ticks of them.
-_TICK_LENGTHS = ("portTICK_PERIOD_MS", "portTICK_RATE_MS")
-
-
-def sleep_time(call: FunctionCall, tick_rate: Fraction | None) -> Time | None:
-    """How long a call sleeps, None if it is not constant.
-
-    Parameters
-    ----------
-    tick_rate : ticks per second; None if unknown: then a number of ticks is not a time
-    """
-    given = call.argument(0)
-    if given is None:
-        return None
-    if call.name in _UNITS:
-        number = given.number
-        return None if number is None or number < 0 else Time(number * _UNITS[call.name])
-    if call.name in _TICKS:
-        return _whole_ticks(given, tick_rate)
-    return _duration(given)
-
-
-def _duration(given: Expression) -> Time | None:
-    """The time that a macro or constructor such as `K_MSEC(10)` makes."""
-    own = given.resolved
-    if own.node.type != "call_expression":
-        return None
-    name, arguments = called(own.node)
-    unit = _DURATIONS.get(name.rpartition("::")[2])
-    if unit is None or len(arguments) != 1:
-        return None
-    number = own.at(arguments[0]).number
-    return None if number is None or number < 0 else Time(number * unit)
-
-
-def _whole_ticks(given: Expression, tick_rate: Fraction | None) -> Time | None:
-    """A delay in ticks; a time is cut to whole ticks, so a short one does not sleep at all."""
-    wanted = _duration(given) or _divided(given)
-    if wanted is not None:
-        if tick_rate is None:
-            return wanted
-        return Time(int((wanted * tick_rate) // SECOND * SECOND / tick_rate))
-    ticks = given.number
-    return None if ticks is None or ticks < 0 or tick_rate is None else Time(int(ticks * SECOND / tick_rate))
-
-
-def _divided(given: Expression) -> Time | None:
-    node = given.resolved.node
-    left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
-    if node.type != "binary_expression" or left is None or right is None:
-        return None
-    if given.at(right).text not in _TICK_LENGTHS:
-        return None
-    number = given.at(left).number
-    return None if number is None or number < 0 else Time(number * MILLISECOND)
-
 
 #: Of a stack of FreeRTOS that is counted in words.
 _WORD = 4

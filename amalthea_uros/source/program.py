@@ -48,7 +48,7 @@ class CodeProgram:
 
     Attributes
     ----------
-    macros : texts of macros without parameters; with several ones the value is unknown
+    macros : texts of macros without parameters, and of enumerators without a value; with several ones the value is unknown
     function_macros : those with parameters, with the texts
     functions : by name; several of one name in different files or classes
     members : of classes
@@ -109,8 +109,23 @@ def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
             name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
             if name is not None and value is not None:
                 program.values[text_of(name)] = value, file
+            elif name is not None:
+                program.macros[text_of(name)].add(_counted(node))
         case "assignment_expression" | "update_expression":
             _note_change(program, node)
+
+
+def _counted(node: Node) -> str:
+    """The value of an enumerator without one, as an expression: one more than that of the enumerator before."""
+    number, before = 0, node.prev_named_sibling
+    while before is not None:
+        if before.type == "enumerator":
+            number += 1
+            value = before.child_by_field_name("value")
+            if value is not None:
+                return f"({text_of(value)}) + {number}"
+        before = before.prev_named_sibling
+    return str(number)
 
 
 def _note_function(program: CodeProgram, file: SourceFile, node: Node) -> None:

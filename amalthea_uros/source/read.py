@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from fractions import Fraction
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import CREATIONS, entity_of
-from amalthea_uros.source.executors import ACTIONS, SPINS, note_spins
+from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws, not_understood
-from amalthea_uros.source.ports import FORMS, SETTERS, SLEEPS, thread_of, transport_of
+from amalthea_uros.source.loops import SENDS, add_senders, add_spins
+from amalthea_uros.source.message_flaws import message_flaws
+from amalthea_uros.source.messages import defined_types
+from amalthea_uros.source.platform import platform_of
+from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
-from amalthea_uros.source.walk import CodeWalk, FunctionCall
+from amalthea_uros.source.sleeps import SLEEPS
+from amalthea_uros.source.walk import CodeWalk
 
 _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
-_SENDS = ("rcl_publish", "rcl_send_request")
 #: How the entry of a program can be called; two of one name are two programs.
 _ENTRIES = ("main", "app_main", "appMain", "setup")
 _OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
@@ -34,17 +37,18 @@ def read_facts(sources: Sources) -> CodeFacts:
     program = read_program(sources.code)
     walk = CodeWalk(program, _NAMES)
     walk.all()
-    facts = CodeFacts()
+    facts = CodeFacts(types=defined_types(sources.interfaces))
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program)]
-    facts.rtos, facts.tick_rate = _operating_system(walk.calls), _tick_rate(program)
+    facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, sources.build)
     _note_objects(facts, walk)
-    note_spins(facts, walk.calls, facts.tick_rate)
-    _note_threads(facts, walk)
+    add_spins(facts, walk.calls)
+    threads = _note_threads(facts, walk)
     _note_publications(facts, walk)
+    add_senders(facts, walk.calls, threads)
     facts.transport = transport_of(walk.calls, program)
     for file in sources.meta:
         facts.options |= _options(file)
-    facts.findings += [*not_understood(walk, facts), *flaws(facts, walk)]
+    facts.findings += [*not_understood(walk, facts), *flaws(facts, walk), *message_flaws(facts, program)]
     return facts
 
 
@@ -66,8 +70,8 @@ def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:
             ACTIONS[call.name](facts, call, walk)
 
 
-def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
-    """Give each executor the thread whose entry leads to its spin."""
+def _note_threads(facts: CodeFacts, walk: CodeWalk) -> dict[str, Thread]:
+    """Give each executor the thread whose entry leads to its spin; all threads by the scopes of their entries."""
     is_idf = any(b'"freertos/' in file.text or b"<freertos/" in file.text for file, _ in walk.program.files)
     threads = [thread_of(call, walk, not is_idf) for call in walk.calls if call.name in FORMS]
     by_entry: dict[str, Thread] = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
@@ -76,6 +80,7 @@ def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
         executor = facts.executors.get(given.key) if call.name in SPINS and given is not None else None
         if executor is not None and call.root is not None:
             executor.thread = executor.thread or by_entry.get(call.root.scope)
+    return by_entry
 
 
 def _note_publications(facts: CodeFacts, walk: CodeWalk) -> None:
@@ -89,24 +94,8 @@ def _note_publications(facts: CodeFacts, walk: CodeWalk) -> None:
             facts.publishes[callback.function.scope] = {
                 given.key: call.place
                 for call in walk.calls_from(callback.function)
-                if call.name in _SENDS and (given := call.argument(0)) is not None
+                if call.name in SENDS and (given := call.argument(0)) is not None
             }
-
-
-def _operating_system(calls: Iterable[FunctionCall]) -> str:
-    """The operating system that is used, as `app.yaml` calls it."""
-    hints = {name: form.rtos for name, form in FORMS.items() if form.rtos} | dict.fromkeys(
-        ("vTaskDelay", "osDelay"), "freertos"
-    )
-    hints |= dict.fromkeys(("k_sleep", "k_msleep", "k_usleep"), "zephyr")
-    return next((hints[call.name] for call in calls if call.name in hints), "")
-
-
-def _tick_rate(program: CodeProgram) -> Fraction | None:
-    texts = program.macros.get("configTICK_RATE_HZ", set()) | program.macros.get("CONFIG_FREERTOS_HZ", set())
-    numbers = {number for text in texts for number in re.findall(r"\d+", text)}
-    rate = next(iter(numbers)) if len(numbers) == 1 else "0"
-    return Fraction(int(rate)) if 0 < len(rate) < 10 and int(rate) else None
 
 
 def _several_programs(program: CodeProgram) -> list[Finding]:

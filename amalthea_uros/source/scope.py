@@ -63,7 +63,22 @@ class Expression:
             if inner is None:
                 break
             node = inner
-        return self.at(node) if node is not self.node else self
+        own = self.at(node) if node is not self.node else self
+        return own._returned() if node.type == "call_expression" else own
+
+    def _returned(self) -> Expression:
+        """The value that a function of the sources returns, if it does nothing else; else the call."""
+        name, arguments = called(self.node)
+        functions = self.program.functions.get(name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], ())
+        if len(functions) != 1 or self.depth > _MAX_DEPTH:
+            return self
+        function = functions[0]
+        statements = [child for child in function.body.named_children if child.type != "comment"]
+        if len(statements) != 1 or statements[0].type != "return_statement" or not statements[0].named_children:
+            return self
+        bindings: dict[str, Binding] = dict(zip(function.parameters, map(self.at, arguments), strict=False))
+        value = statements[0].named_children[0]
+        return Expression(self.program, value, function.file, function, bindings, self.depth + 1).core
 
     @property
     def key(self) -> str:
@@ -120,7 +135,9 @@ class Expression:
     def resolved(self) -> Expression:
         """What a constant or parameter stands for, else itself."""
         own = self.core
-        if own.node.type not in ("identifier", "field_expression") or own.depth > _MAX_DEPTH:
+        if own.node.type == "subscript_expression" and own.depth <= _MAX_DEPTH:
+            return own._element() or own
+        if own.node.type not in ("identifier", "field_expression", "qualified_identifier") or own.depth > _MAX_DEPTH:
             return own
         name = text_of(own.node)
         bound = own.bindings.get(name)
@@ -134,10 +151,21 @@ class Expression:
             file = place.file if isinstance(place, CodeFunction) else place
             bindings = own.bindings if function is own.function else {}
             return Expression(self.program, node, file, function, bindings, own.depth + 1).resolved
-        texts = self.program.macros.get(name, ())
+        texts = self.program.macros.get(name.rpartition("::")[2], ())
         if len(texts) == 1 and (parsed := parse_expression(next(iter(texts)))) is not None:
             return own.at(parsed).resolved
         return own
+
+    def _element(self) -> Expression | None:
+        """The element of an array that is initialised with a list, and that nothing changes."""
+        array, index = self.node.child_by_field_name("argument"), self._index()
+        if array is None or index is None:
+            return None
+        values, number = self.at(array).resolved, index.number
+        elements = [child for child in values.node.named_children if child.type != "comment"]
+        if values.node.type != "initializer_list" or number is None or not 0 <= number < len(elements):
+            return None
+        return values.at(elements[number]).resolved
 
     @property
     def string(self) -> str | None:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 #: The place of a loop or choice: its file and its first byte.
 Mark: TypeAlias = tuple[str, int]
 
+#: A choice, and the branch of it that something is in.
+Branch: TypeAlias = tuple[Mark, Mark]
+
 #: Nested nodes, those of called functions included.
 _MAX_DEPTH = 350
 #: Iterations of a loop that are followed one by one, because they create something each.
@@ -43,7 +46,7 @@ class FunctionCall:
     root : the function at whose start the path begins that leads here; None for code outside of functions
     function : the function that it is in
     loops : the loops around it, the outermost first, those around the calls that lead here included
-    conditions : the places of the choices that it depends on
+    conditions : the branches of choices that it is in
     uncertain : whether it is compiled only under a condition that the sources do not decide
     unchecked : whether its result is not used
     """
@@ -54,9 +57,18 @@ class FunctionCall:
     root: CodeFunction | None
     function: CodeFunction | None
     loops: tuple[Mark, ...]
-    conditions: tuple[Mark, ...]
+    conditions: tuple[Branch, ...]
     uncertain: bool
     unchecked: bool
+
+    def excludes(self, other: FunctionCall) -> bool:
+        """Whether it is in another branch of a choice than another call, such as another state of a state machine."""
+        branches = dict(self.conditions)
+        return any(branches.get(choice, branch) != branch for choice, branch in other.conditions)
+
+    def always_with(self, other: FunctionCall) -> bool:
+        """Whether it is made whenever the code of another call is reached."""
+        return set(self.conditions) <= set(other.conditions)
 
     def argument(self, index: int) -> Expression | None:
         """An argument, None if there are fewer."""
@@ -70,7 +82,7 @@ class _WalkPosition:
     bindings: Mapping[str, Binding]
     stack: tuple[CodeFunction, ...] = ()
     loops: tuple[Mark, ...] = ()
-    conditions: tuple[Mark, ...] = ()
+    conditions: tuple[Branch, ...] = ()
     uncertain: bool = False
     depth: int = 0
 
@@ -214,9 +226,11 @@ class CodeWalk:
         condition = node.child_by_field_name("condition")
         if condition is not None:
             self._visit(condition, context)
-        for child in node.named_children:
+        body = node.child_by_field_name("body") if node.type == "switch_statement" else None
+        for child in (body or node).named_children:
             if condition is None or child.id != condition.id:
-                self._visit(child, replace(context, conditions=(*context.conditions, _mark(child, context))))
+                branch = _mark(node, context), _mark(child, context)
+                self._visit(child, replace(context, conditions=(*context.conditions, branch)))
 
     def _lambda(self, node: Node, context: _WalkPosition) -> None:
         """Code that is called later; what creates a callback of it finds it by its place."""

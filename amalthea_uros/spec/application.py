@@ -46,7 +46,7 @@ class CallbackSection(DescriptionSection):
     writes: list[Name] = Field(default_factory=list)
     """Labels that it writes at its end."""
     publishes: list[Name] = Field(default_factory=list)
-    """Topics of its node that it publishes to."""
+    """Topics that it publishes to: those of its node, or of another node if only one has a publisher for it."""
     requests: list[Name] = Field(default_factory=list)
     """Clients of its node that it sends requests with."""
     runs_in: Annotated[Name, Field(examples=["own-task", "executor"])] | None = None

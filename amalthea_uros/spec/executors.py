@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
-from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Size, described, problem
+from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Size, described
 
 
 class MessageCost(Shorthand):
@@ -65,33 +66,6 @@ class TriggerSection(Shorthand):
     """As soon as all callbacks of one of these sets are ready: what a trigger function of the application returns."""
 
 
-class LoopSection(DescriptionSection):
-    """How the thread of an executor spins: exactly one of `spin_some`, `spin_period` and `spin`."""
-
-    spin_some: Offset | None = None
-    """Timeout of `rclc_executor_spin_some` in an endless loop; `sleep` follows each call."""
-    sleep: Offset = 0
-    """Time that the thread sleeps after each `spin_some`; default: none, a bare loop."""
-    spin_period: Duration | None = None
-    """Period of `rclc_executor_spin_period`, which waits for `timeout`, not for the period."""
-    spin: Duration | None = None
-    """Timeout of `rclc_executor_spin`, an endless `spin_some`; that of rclc is `1 s`."""
-    timeout: Duration | None = None
-    """Timeout of the executor, with `spin_period`; default: that of the middleware, 1 s for rclc."""
-
-    @model_validator(mode="after")
-    def _is_one_of_three(self) -> Self:
-        stated = [key for key in ("spin_some", "spin_period", "spin") if getattr(self, key) is not None]
-        if len(stated) != 1:
-            raise problem(
-                f"expected one of 'spin_some', 'spin_period' and 'spin', found {' and '.join(map(repr, stated)) or 'none'}"
-            )
-        for key, needed in (("sleep", "spin_some"), ("timeout", "spin_period")):
-            if key in self.model_fields_set and needed not in stated:
-                raise problem(f"{key!r} has no effect without {needed!r}")
-        return self
-
-
 _PLACES = described(
     own_task="Each callback in a separate task.",
     in_executor="One after the other in the task of the executor.",
@@ -120,7 +94,7 @@ class ExecutorSection(DescriptionSection):
     overhead: OverheadSection | None = None
     """Overhead of the operating system per job; default: that of `os`."""
     loop: LoopSection | None = None
-    """How its thread spins; without it, its task is activated with `period`."""
+    """How its thread spins; without it, its task is activated with `period`, if it does not spin in the loop of another executor."""
     max_handles: Count | None = None
     """Number of handles that `rclc_executor_init` gets; default: as many as it has."""
     stack: Size | None = None
@@ -136,3 +110,31 @@ class ExecutorSection(DescriptionSection):
     """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
     trigger: TriggerSection = Field(default_factory=TriggerSection.model_construct)
     """Condition under which callbacks in the executor run."""
+
+
+def with_shared_loops(executors: tuple[ExecutorSection, ...]) -> tuple[ExecutorSection, ...]:
+    """Executors, of which those that spin in the loop of another one have a loop, too: with the timeout that is given there."""
+    if not any(each.loop is not None and each.loop.items is not None for each in executors):
+        return executors
+    shared = {
+        item.executor: (each, item)
+        for each in executors
+        if each.loop is not None
+        for item in each.loop.items or ()
+        if item.executor is not None and item.executor != each.name
+    }
+    executors_with_loops = []
+    for each in executors:
+        if each.loop is not None and each.loop.items is not None and not each.inherits("loop"):
+            own = next((item for item in each.loop.items if item.is_own_spin), None)
+            loop = each.loop.model_copy(update={"spin_some": None if own is None else own.spin_some})
+            executors_with_loops.append(each.model_copy(update={"loop": loop}))
+        elif each.name in shared:
+            owner, item = shared[each.name]
+            loop = (owner.loop or LoopSection(spin_some=0)).model_copy(update={"spin_some": item.spin_some, "items": None})
+            # Its thread is that of the owner.
+            thread = {key: getattr(owner, key) for key in ("priority", "core", "overhead") if not each.states(key)}
+            executors_with_loops.append(each.model_copy(update={"loop": loop, **thread}))
+        else:
+            executors_with_loops.append(each)
+    return tuple(executors_with_loops)

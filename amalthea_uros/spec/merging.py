@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Set as AbstractSet
 from typing import Any, TypeVar
 
-from amalthea_uros.spec.executors import ExecutorSection, LoopSection
+from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.transports import WIRES, TransportSection
@@ -62,4 +62,4 @@ def _excluded(own: DescriptionSection) -> AbstractSet[str]:
 
 def has_parts(value: Any) -> bool:
     """Whether a value is completed, instead of being replaced."""
-    return isinstance(value, DescriptionSection) and not isinstance(value, Shorthand | LoopSection)
+    return isinstance(value, DescriptionSection) and not isinstance(value, Shorthand)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from amalthea_uros.spec.executors import ExecutorSection, MessageCost
+from amalthea_uros.spec.executors import ExecutorSection, MessageCost, with_shared_loops
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.transports import Agent, TransportSection
 from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Priority, Size, described
@@ -175,6 +175,20 @@ class PoolSizes(DescriptionSection):
     """zenoh-pico: whether messages longer than a batch are sent in fragments."""
 
 
+def option_units() -> dict[str, str]:
+    """The unit of each build option: "B", "ms" or "number"; "switch" for a truth value, "word" for a choice."""
+    properties = PoolSizes.model_json_schema()["properties"]
+    return {key: _unit(properties[key]["anyOf"][0]) for key in PoolSizes.model_fields}
+
+
+def _unit(schema: dict[str, Any]) -> str:
+    if "enum" in schema:
+        return "word"
+    if "examples" in schema:
+        return "B" if schema["examples"] == ["4 B"] else "ms"
+    return "switch" if schema["type"] == "boolean" else "number"
+
+
 _POLICIES = described(
     FixedPriorityPreemptive="The ready task with the highest priority executes.",
     OSEK="As `FixedPriorityPreemptive`, with the task types and the priority ceiling protocol of OSEK.",
@@ -238,4 +252,11 @@ class Middleware(DescriptionSection):
     @property
     def stated_executors(self) -> tuple[ExecutorSection, ...]:
         """The executors; the first one serves callbacks that name no other."""
-        return tuple(self.executors) or (self.executor,)
+        return with_shared_loops(tuple(self.executors) or (self.executor,))
+
+    @property
+    def thread_count(self) -> int:
+        """The threads or tasks in which executors spin: several ones can spin in one loop."""
+        loops = [executor.loop for executor in self.stated_executors if executor.loop is not None]
+        spins = (item.executor for loop in loops for item in loop.items or ())
+        return len(self.stated_executors) - len({name for name in spins if name is not None})

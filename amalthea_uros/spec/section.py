@@ -135,7 +135,9 @@ def attach_locations(value: Any, node: Node, source: YamlText) -> None:
             if inner is not outer or isinstance(getattr(value, name), DescriptionSection):
                 attach_locations(getattr(value, name), inner, source)
     elif isinstance(value, DescriptionSection):
-        attach_locations(value, MappingNode(node.place, {}, {}), source)
+        is_list = isinstance(value, Shorthand) and isinstance(node, SequenceNode)
+        items = dict.fromkeys(value.shorthand, node) if is_list and isinstance(value, Shorthand) else {}
+        attach_locations(value, MappingNode(node.place, items, {}), source)
     elif isinstance(value, list | tuple) and isinstance(node, SequenceNode):
         for item, inner in zip(value, node.items, strict=True):
             attach_locations(item, inner, source)

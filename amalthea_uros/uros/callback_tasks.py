@@ -9,6 +9,7 @@ from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.spec.executors import ExecutorSection
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, body_name, registration_order
 from amalthea_uros.uros.application.phases import ExecutorPhases, own_task_counter
@@ -21,8 +22,9 @@ from amalthea_uros.uros.assembly.executor_runnables import (
     own_task_calls,
 )
 from amalthea_uros.uros.assembly.planned import PlannedTask, activity_sequence, trigger_name
-from amalthea_uros.uros.executors.add import add_looping_executor
+from amalthea_uros.uros.executors.add import add_looping_executor, add_sending_thread
 from amalthea_uros.uros.executors.checks import check_order, check_threads
+from amalthea_uros.uros.executors.threads import check_threads_of_loops, in_thread_order, thread_items, threads_of
 from amalthea_uros.uros.periods import (
     PeriodChoice,
     check_callbacks_in_executor,
@@ -36,35 +38,56 @@ from amalthea_uros.uros.transports.messages import driver_costs
 def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tuple[PeriodChoice, ...]:
     """Add the executors and the callbacks' own tasks, and return the choice of their periods, that of each executor first."""
     choices: list[PeriodChoice] = []
-    executors = context.description.middleware.stated_executors
-    for executor in executors:
+    middleware = context.description.middleware
+    executors = middleware.stated_executors
+    check_threads_of_loops(middleware, context.notes)
+    by_name = {executor.name: executor for executor in executors}
+    for executor in map(by_name.__getitem__, in_thread_order(tuple(by_name), middleware)):
         own = [callback for callback in callbacks if callback.executor == executor.name]
         inside = [callback for callback in own if callback.in_executor]
         ordered = registration_order(inside if executor.loop is None else own, executor, context.notes)
         check_order(executor, context.notes)
-        if not own and (executor.loop is not None or len(executors) > 1):
+        if executor.loop is not None and executor.loop.only_sends and not own:
+            add_sending_thread(context, executor)
+        elif not own and (executor.loop is not None or len(executors) > 1):
             advice = f"Set 'runs_in: {executor.name}' at callbacks or nodes, or remove the executor."
             context.notes.error("APP003", f"the executor {executor.name!r} serves no callback", executor.location(), advice)
         elif executor.loop is not None:
-            choices += _add_looping(context, executor, ordered)
+            choices += _add_looping(context, executor, ordered, _of_thread(executor, callbacks, middleware))
         else:
             choices += _add_periodic(context, executor, own, ordered)
-    loops = [executor.name for executor in executors if executor.loop is not None]
+    loops = threads_of([executor for executor in executors if executor.loop is not None], middleware)
+    periodic = [executor.name for executor in executors if executor.loop is None]
     if loops:
         sending = [callback for callback in callbacks if not callback.in_executor and callback.outgoing]
         if not context.profile.sending.is_protected:
-            check_threads([executor.name for executor in executors], sending, context.description.middleware, context.notes)
+            check_threads([*loops, *periodic], sending, middleware, context.notes)
     return tuple(choices)
 
 
-def _add_looping(context: AssemblyContext, executor: ExecutorSection, callbacks: Sequence[Callback]) -> Iterator[PeriodChoice]:
-    """Add an executor with a loop, and the tasks of callbacks that do not run in it: it activates those without a period."""
+def _of_thread(executor: ExecutorSection, callbacks: Sequence[Callback], middleware: Middleware) -> Sequence[Callback]:
+    """The callbacks that the thread of an executor serves."""
+    items = thread_items(executor.name, middleware)
+    names = (executor.name,) if items is None else items.executors
+    return [callback for callback in callbacks if callback.executor in names]
+
+
+def _add_looping(
+    context: AssemblyContext, executor: ExecutorSection, callbacks: Sequence[Callback], of_thread: Sequence[Callback]
+) -> Iterator[PeriodChoice]:
+    """Add an executor with a loop, and the tasks of callbacks that do not run in it: it activates those without a period.
+
+    Parameters
+    ----------
+    callbacks : that it serves
+    of_thread : those that its thread serves
+    """
     core = context.core(executor.core, executor.location("core"))
     bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
     outside = [callback for callback in callbacks if not callback.in_executor]
     triggered = {callback.name: (callback.name,) for callback in outside if callback.section.task_period is None}
     is_alone = len(context.description.middleware.stated_executors) == 1 and not any(each.outgoing for each in outside)
-    add_looping_executor(context, executor, callbacks, bodies, triggered, is_alone)
+    add_looping_executor(context, executor, callbacks, bodies, triggered, is_alone, of_thread)
     for callback in outside:
         if callback.name in triggered:
             _add_triggered_task(context, callback, bodies[callback.name])

@@ -120,7 +120,14 @@ def priorities(tasks: Sequence[PlannedTask], notes: Notes, scale: PriorityScale 
         else:
             assigned[task.name] = scale.rank(task.priority)
         highest = max(highest, assigned[task.name])
-    return assigned
+    return assigned | _of_threads(tasks, assigned)
+
+
+def _of_threads(tasks: Sequence[PlannedTask], assigned: Mapping[str, int]) -> dict[str, int]:
+    """The priority of the tasks that are parts of a thread: the highest one."""
+    return {
+        task.name: max(assigned[each.name] for each in tasks if each.thread == task.thread) for task in tasks if task.thread
+    }
 
 
 def _rate_monotonic(task: PlannedTask) -> tuple[float, bool]:
@@ -157,7 +164,8 @@ def check_shared_priorities(
     seen: set[str] = set()
     for allocation, priority, others in sharing_a_priority(system, allocated_cores(system)):
         seen.add(allocation.task)
-        before = next((other for other in others if other in seen), None)
+        # The executors of a thread have its priority.
+        before = next((other for other in others if other in seen - system.tasks_of_thread(allocation.task)), None)
         if before is not None:
             message = f"{allocation.task!r} has the same priority {scale.number(priority)} as {before!r}"
             notes.warning("UR106", message, origins.get(allocation.task), "Set different priorities.")

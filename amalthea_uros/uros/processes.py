@@ -13,7 +13,7 @@ from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.background_tasks import add_background_tasks
 from amalthea_uros.uros.callback_tasks import add_callbacks
 from amalthea_uros.uros.executors.activation import is_triggered, iteration_trigger_name
-from amalthea_uros.uros.executors.add import check_sleeps
+from amalthea_uros.uros.executors.sleeps import check_sleeps
 from amalthea_uros.uros.middleware.checks import check_middleware
 from amalthea_uros.uros.middleware.options import Option, check_options
 from amalthea_uros.uros.network.classic_bus import BusMessage, add_interrupt, bus_messages, check_bus_load, check_identifiers

@@ -6,7 +6,7 @@ from amalthea_uros import analyze
 from amalthea_uros.spec.os import OsSection, SleepTicks
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
 from amalthea_uros.units import MICROSECOND, MILLISECOND, Duration
-from amalthea_uros.uros.executors.add import slept
+from amalthea_uros.uros.executors.sleeps import slept
 
 MS = MILLISECOND
 TASKS = """

@@ -58,7 +58,9 @@ class ExecutorThread:
             raise UnknownError("its core is shared by servers with budgets, which is not supported for executors in loops")
         blocking = Blocking.of(processes, solution)
         level = blocking.level(scheduled)
-        above = [item for item in processes if item.rank >= level.rank and item.name != task]
+        # One executor of a thread follows the other.
+        own_thread = context.system.tasks_of_thread(task)
+        above = [item for item in processes if item.rank >= level.rank and item.name not in own_thread]
         unknown = solution.intruder(scheduled.core, above_isrs=False) or next(
             (item.name for item in above if not solution.is_analysable(item.name)), ""
         )

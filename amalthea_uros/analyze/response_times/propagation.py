@@ -159,7 +159,8 @@ def activated_with(name: str, context: TimingContext) -> Executor | None:
 
 def _has_effects(item: ScheduledProcess, executors: ExecutorOccurrences, context: TimingContext) -> bool:
     """Whether it matters to other processes when iterations of an executor execute, besides those messages that are known."""
-    if any(other.rank <= item.rank and other.name != item.name for other in context.on_core(item.core)):
+    own_thread = context.system.tasks_of_thread(item.name)
+    if any(other.rank <= item.rank and other.name not in own_thread for other in context.on_core(item.core)):
         return True
     try:
         positions = context.dataflow.events.positions(item.name)

@@ -124,7 +124,8 @@ def _text(item: am.CustomProperty) -> str:
 def _flaw_of_executor(executor: Executor, system: System) -> str | None:
     called = (handle.runnable for handle in executor.handles)
     takes = (handle.take for handle in executor.handles if handle.take is not None)
-    return _missing("runnable", (executor.spin, *called, *takes), system.runnables)
+    busy = () if executor.busy_wait is None else (executor.busy_wait,)
+    return _missing("runnable", (executor.spin, *called, *takes, *busy), system.runnables)
 
 
 def _flaw_of_network(network: Network, system: System) -> str | None:

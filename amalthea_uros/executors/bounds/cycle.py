@@ -13,6 +13,9 @@ An iteration executes the overhead of the executor once. Which part of it comes 
 sleep can be all of it; the time of a cycle with a sleep is the lesser of two bounds: the sleep in the middle of one window, and two
 windows.
 
+If several executors spin in the loop of a thread, a cycle of one of them contains everything else in the loop: an iteration of each of
+the others with its longest wait, and all sleeps. Busy waits follow the callbacks of an iteration, and count like their execution.
+
 A wait answers the heartbeats that are unread, whose number depends on the cycle: the least number that is consistent is the bound
 (`backlog`).
 """
@@ -40,9 +43,12 @@ from amalthea_uros.executors.semantics.readiness import (
     independent_handles,
     is_message,
     messages,
+    others_of_thread,
     reads_in_waits,
     sharing,
     takes_one_message,
+    thread_of,
+    why_unknown,
 )
 from amalthea_uros.executors.semantics.suspension import (
     NONE,
@@ -58,7 +64,7 @@ from amalthea_uros.executors.semantics.suspension import (
 )
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind
 from amalthea_uros.perf.network import Span
-from amalthea_uros.units import Time
+from amalthea_uros.units import Interval, Time
 
 #: After which the number of heartbeats in a wait is considered unbounded.
 _STEPS = 1000
@@ -88,6 +94,7 @@ class Cycle:
     session_wait : how long others can keep the session when it is needed
     writing : how long a wait is extended by acknowledgements of what it reads, and heartbeats
     backlog_age : how long a message can wait unread; None if that has no bound, or nothing is acknowledged
+    others : an iteration with its wait of each other executor in the loop of the thread
     """
 
     executor: Executor
@@ -99,6 +106,7 @@ class Cycle:
     session_wait: Time | None = 0
     writing: Suspension = NONE
     backlog_age: Time | None = None
+    others: tuple[IterationPart, ...] = ()
 
     @classmethod
     def of(cls, executor: Executor, solved: SolvedSystem, sending: Mapping[str, Span]) -> Cycle:
@@ -106,8 +114,11 @@ class Cycle:
 
         Raises
         ------
-        UnknownError : its execution demand, or what can preempt it, is unknown.
+        UnknownError : its execution demand, what can preempt it, or what else is done in the loop is unknown.
         """
+        reason = why_unknown(executor, solved.context.system.executors)
+        if reason:
+            raise UnknownError(reason)
         processor = solved.processor(executor.task)
         demand = IterationDemand.of(executor, solved.context)
         takes_one = takes_one_message(executor, solved.context.system.executors)
@@ -131,9 +142,27 @@ class Cycle:
             session_wait=session_wait(self.executor, system, self.sending, writes),
             writing=writing_in_wait(self.executor, system, self.sending, writes),
         )
+        cycle = replace(
+            cycle, others=tuple(cycle._with_wait(each, writes) for each in others_of_thread(self.executor, system.executors))
+        )
         if not acknowledgements(system):
             return cycle
         return replace(cycle, backlog_age=cycle._backlog_age())
+
+    def _with_wait(self, other: Executor, writes: ProtocolWrites) -> IterationPart:
+        """An iteration of another executor in the loop of the thread, with its longest wait."""
+        system, wait = self.solved.context.system, longest_wait(other)
+        cycle = replace(
+            self,
+            executor=other,
+            demand=IterationDemand.of(other, self.solved.context),
+            takes_one=takes_one_message(other, system.executors),
+            session_wait=session_wait(other, system, self.sending, writes),
+            writing=writing_in_wait(other, system, self.sending, writes),
+        )
+        part, suspended = cycle.whole, cycle._suspended(wait)
+        waiting = Suspension(most=suspended, times=cycle._resumed(wait) + 1, why=f"the loop also waits for {other.name!r}")
+        return IterationPart(demand=part.demand, suspension=in_sequence([part.suspension, waiting]))
 
     def _backlog_age(self) -> Time | None:
         """The greatest age of a message in the receive buffer; if this executor does not read in its waits, that of one that does."""
@@ -162,7 +191,8 @@ class Cycle:
         """
         if not heartbeats(self.solved.context.system) or not has_unacknowledged(self.sending, self.solved):
             return 0
-        return max_heartbeats(longest_wait(self.executor), self.solved)
+        of_thread = thread_of(self.executor, self.solved.context.system.executors)
+        return max_heartbeats(max(map(longest_wait, of_thread)), self.solved)
 
     @property
     def time_base(self) -> int:
@@ -188,7 +218,7 @@ class Cycle:
         """The longest iteration: its overhead, and all callbacks that one iteration can call."""
         always = independent_handles(self.executor)
         excluded = [handle for handle in self.executor.handles if handle not in always]
-        return self._part(always, excluded, self.demand.spin.upper)
+        return self._part(always, excluded, self.demand.spin.upper + self.demand.after.upper)
 
     def _part(self, always: Sequence[Handle], excluded: Sequence[Handle], demand: Time) -> IterationPart:
         """The demand of some handles; of those that exclude each other, the longest."""
@@ -248,7 +278,7 @@ class Cycle:
 
     def longest_with(self, wait: Time) -> Time | None:
         """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
-        part, suspended, beginning = self.whole, self._suspended(wait), self._beginning(wait)
+        part, suspended, beginning = self._of_thread, self._suspended(wait), self._beginning(wait)
         if part.suspension.most is None or suspended is None or self.busy is None or beginning is None:
             return None
         together, resumed = part.suspension.most + suspended, self._resumed(wait)
@@ -258,10 +288,18 @@ class Cycle:
                 slept = (self.executor.loop.period or 0) + SLEEP_RESOLUTION + beginning
                 return None if unslept is None else max(unslept, slept)
             case LoopKind.SLEEPING if self.sleep:
-                found = [self.sleep + self.busy + beginning]
+                bounds = [] if self.others else [self.sleep + self.busy + beginning]
                 joint = self.processor.time(part.demand, together + self.sleep, part.resumed + 1 + resumed)
-                return min([*found, *([] if joint is None else [joint])])
+                return min([*bounds, *([] if joint is None else [joint])], default=None)
         return self.processor.time(part.demand, together, part.resumed + resumed)
+
+    @cached_property
+    def _of_thread(self) -> IterationPart:
+        """The longest iteration, and those of the other executors in the loop, with their waits."""
+        parts = (self.whole, *self.others)
+        return IterationPart(
+            demand=sum(part.demand for part in parts), suspension=in_sequence([part.suspension for part in parts])
+        )
 
     @property
     def _longest_without_reading(self) -> Time | None:
@@ -302,7 +340,7 @@ class Cycle:
     @cached_property
     def until_wait(self) -> Time | None:
         """The longest time from when it is fixed what is ready to the next wait; None if it is not bounded."""
-        if self.executor.loop.kind is LoopKind.PERIODIC:
+        if self.executor.loop.kind is LoopKind.PERIODIC or self.others:
             return self.longest
         return None if self.busy is None else self.busy + self.sleep
 
@@ -319,7 +357,13 @@ class Cycle:
     @cached_property
     def shortest(self) -> Time:
         """The shortest cycle: nothing is called."""
-        return sleep_of(self.executor).lower + self.demand.spin.lower // self.time_base
+        return sleep_of(self.executor).lower + self._overhead.lower // self.time_base
+
+    @property
+    def _overhead(self) -> Interval[Time]:
+        """The demand of every iteration, without callbacks."""
+        spin, after = self.demand.spin, self.demand.after
+        return Interval(spin.lower + after.lower, spin.upper + after.upper)
 
     @property
     def least_average(self) -> Time:
@@ -336,7 +380,7 @@ class Cycle:
         return self._shortest_executing(handle) + self.suspension(handle).least
 
     def _shortest_executing(self, handle: Handle) -> Time:
-        return sleep_of(self.executor).lower + (self.demand.spin.lower + self.demand.of_handle(handle).lower) // self.time_base
+        return sleep_of(self.executor).lower + (self._overhead.lower + self.demand.of_handle(handle).lower) // self.time_base
 
     @property
     def most_served(self) -> int | None:
@@ -351,8 +395,8 @@ class Cycle:
     @property
     def unbounded(self) -> str:
         """Why the longest cycle is not bounded."""
-        if self.session_wait is None or self.whole.suspension.most is None:
-            why = self.whole.suspension.why or "the time for which other executors of its session keep it is unknown"
+        if self.session_wait is None or self._of_thread.suspension.most is None:
+            why = self._of_thread.suspension.why or "the time for which other executors of its session keep it is unknown"
             return f"an iteration can be suspended without a bound: {why}"
         if self.writing.most is None:
             return f"a wait has no bound: {self.writing.why}"

@@ -140,6 +140,12 @@ def _of_cycle(cycle: Cycle) -> list[TimePart]:
         *found,
         TimePart(name="publications of the running iteration", most=suspension.most or 0, why=suspension.why),
         TimePart(name="sleep", most=cycle.sleep, why="the loop sleeps after each iteration"),
+        TimePart(
+            name="other executors of the loop",
+            most=_time(sum(part.demand for part in cycle.others), cycle)
+            + sum(part.suspension.most or 0 for part in cycle.others),
+            why="the loop lets them spin before this one again, with their waits",
+        ),
         TimePart(name="acknowledgements", most=cycle.writing.most or 0, why=cycle.writing.why),
         TimePart(
             name="session",

@@ -8,7 +8,15 @@ from fractions import Fraction
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.executors.semantics.loops import busy_polls, longest_wait, min_pace, sleep_of
-from amalthea_uros.executors.semantics.readiness import can_defer, certain_rate, has_backlog, messages, shares_session, timers
+from amalthea_uros.executors.semantics.readiness import (
+    can_defer,
+    certain_rate,
+    has_backlog,
+    messages,
+    other_threads,
+    shares_session,
+    timers,
+)
 from amalthea_uros.executors.semantics.suspension import SESSION_ASSUMPTION
 from amalthea_uros.perf.executors import Executor, HandleKind, LoopKind
 from amalthea_uros.perf.system import System
@@ -102,7 +110,7 @@ def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Analysi
             )
             notes.warning("EXE016", message, executor)
     if shares_session(executor, others):
-        sharing = [each.name for each in others if each.session == executor.session and each.name != executor.name]
+        sharing = [each.name for each in other_threads(executor, others)]
         longest = max(longest_wait(each) for each in others if each.name in sharing)
         publishers = [handle.name for handle in executor.handles if handle.publications]
         if publishers and longest:

@@ -45,7 +45,9 @@ def loss_of_timer(handle: Handle, cycle: Cycle, lateness: Span) -> Loss | None:
     multiples = ", ".join([*(time_text(number * period) for number in range(1, min(count, 3) + 1)), *["..."] * (count > 3)])
     sequence = (
         f"{handle.name} is due at 0 s, just after an iteration has checked its timers; the rest of the iteration"
-        f"{f' and the sleep of {time_text(cycle.sleep)}' if cycle.sleep else ''}, then the next iteration up to the callback, end at "
+        f"{f' and the sleep of {time_text(cycle.sleep)}' if cycle.sleep else ''}"
+        f"{' and the other executors of the loop with their waits' if cycle.others else ''}, "
+        "then the next iteration up to the callback, end at "
         f"{_text(lateness.most)}; what was due until then at {multiples} is lost, "
         f"the next call is due at {time_text(following)}"
     )

@@ -26,11 +26,13 @@ class IterationDemand:
     ----------
     spin : overhead of every iteration
     takes, callbacks : by the names of handles
+    after : what the thread waits for without sleeping, after the callbacks
     """
 
     spin: Interval[Time]
     takes: Mapping[str, Interval[Time]]
     callbacks: Mapping[str, Interval[Time]]
+    after: Interval[Time] = _NONE
 
     @classmethod
     def of(cls, executor: Executor, context: TimingContext) -> IterationDemand:
@@ -58,12 +60,18 @@ class IterationDemand:
         # What a job executes besides its activities, such as copies of labels, can be anywhere in it.
         beside = context.demand_model.of_process(process, core).worst - demand(process.activities).upper
         # Calls that no handle has are overhead of the operating system around the iteration.
-        own = {executor.spin, executor.poll, *(name for handle in handles for name in (handle.take, handle.runnable))}
+        own = {
+            executor.spin,
+            executor.poll,
+            executor.busy_wait,
+            *(name for handle in handles for name in (handle.take, handle.runnable)),
+        }
         foreign = demand(each for each in process.activities if isinstance(each, Call) and each.runnable not in own)
         return cls(
             spin=Interval(spin.lower, spin.upper + max(0, beside) + foreign.upper),
             takes={handle.name: _NONE if handle.take is None else calls(handle.take) for handle in handles},
             callbacks={handle.name: calls(handle.runnable) for handle in handles},
+            after=calls(executor.busy_wait),
         )
 
     def of_handle(self, handle: Handle) -> Interval[Time]:

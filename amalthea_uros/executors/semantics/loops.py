@@ -26,7 +26,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.executors.semantics.readiness import can_defer, is_message, messages, shares_session, starts_alone, timers
+from amalthea_uros.executors.semantics.readiness import (
+    can_defer,
+    is_message,
+    messages,
+    shares_session,
+    starts_alone,
+    thread_of,
+    timers,
+)
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
@@ -92,8 +100,16 @@ def busy_polls(executor: Executor) -> str:
 
 def timing_context(system: System, settings: Settings | None = None) -> TimingContext:
     """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again."""
-    polling = {executor.task: reason for executor in system.executors if (reason := busy_polls(executor))}
+    polling = {
+        executor.task: reason for executor in system.executors if (reason := executor.unknown or _busy_thread(executor, system))
+    }
     return TimingContext.of(system, settings, unknown_demands=polling | _sent_again(system))
+
+
+def _busy_thread(executor: Executor, system: System) -> str:
+    """Why the thread of an executor polls; "" if it does not, as another executor in its loop waits."""
+    reasons = [busy_polls(each) for each in thread_of(executor, system.executors)]
+    return busy_polls(executor) if all(reasons) else ""
 
 
 def _sent_again(system: System) -> dict[str, str]:
@@ -183,6 +199,8 @@ def why_dense(executor: Executor, executors: Iterable[Executor], longest: Time) 
     """
     if min_pace(executor):
         return ""
+    if executor.place is not None:
+        return "its loop has no sleep, so that iterations of its executors follow each other as messages for any of them arrive"
     if shares_session(executor, executors):
         return "its loop has no sleep, so that iterations follow each other after one that waited for others of its session"
     if executor.loop.kind is not LoopKind.PERIODIC:

@@ -75,12 +75,42 @@ def starts_alone(handle: Handle, executor: Executor) -> bool:
 
 def shares_session(executor: Executor, executors: Iterable[Executor]) -> bool:
     """Whether another executor uses the same session, so that they exclude each other."""
-    return executor.session is not None and len(sharing(executor, executors)) > 1
+    return executor.session is not None and bool(other_threads(executor, executors))
+
+
+def other_threads(executor: Executor, executors: Iterable[Executor]) -> list[Executor]:
+    """The executors of other threads that use the same session; within a thread, one follows the other."""
+    own = executor.place
+    return [
+        each
+        for each in sharing(executor, executors)
+        if each.name != executor.name and (own is None or each.place is None or each.place.thread != own.thread)
+    ]
 
 
 def sharing(executor: Executor, executors: Iterable[Executor]) -> list[Executor]:
     """The executors that use the same buffers and slots for messages, itself included; without a session, all that have none."""
     return [each for each in executors if each.session == executor.session]
+
+
+def thread_of(executor: Executor, executors: Sequence[Executor]) -> list[Executor]:
+    """The executors that spin one after the other in the same thread, in their order, itself included."""
+    if executor.place is None:
+        return [executor]
+    return [each for each in executors if each.place is not None and each.place.thread == executor.place.thread]
+
+
+def others_of_thread(executor: Executor, executors: Sequence[Executor]) -> list[Executor]:
+    """The other executors that spin in the same thread."""
+    return [each for each in thread_of(executor, executors) if each.name != executor.name]
+
+
+def why_unknown(executor: Executor, executors: Iterable[Executor]) -> str:
+    """Why the time of the loop of an executor is unknown; "" if it is not.
+
+    A publication outside of callbacks, or a ping, uses the session and its buffers, which delays all executors that share them.
+    """
+    return next((each.unknown for each in sharing(executor, executors) if each.unknown), "")
 
 
 def independent_handles(executor: Executor) -> tuple[Handle, ...]:

@@ -25,7 +25,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from amalthea_uros.executors.semantics.loops import longest_wait
-from amalthea_uros.executors.semantics.readiness import messages
+from amalthea_uros.executors.semantics.readiness import messages, other_threads
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.executors import Executor, Handle, Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
@@ -215,9 +215,7 @@ def _longest(suspensions: list[Suspension]) -> list[Suspension]:
 def session_wait(executor: Executor, system: System, sending: Mapping[str, Span], writes: ProtocolWrites) -> Time | None:
     """How long the other executors of its session can keep it from an executor that asks for it; None if that is not known."""
     total: Time = 0
-    for other in system.executors:
-        if executor.session is None or other.session != executor.session or other.name == executor.name:
-            continue
+    for other in other_threads(executor, system.executors) if executor.session is not None else ():
         reading = writing_in_wait(other, system, sending, writes).most
         publishing = [suspension_of(handle, system, sending, 0).most for handle in other.handles]
         if reading is None or None in publishing:

@@ -119,7 +119,7 @@ def plan_iteration(m: Memory, process: int, executor: int) -> int:
 def _go_on(m: Memory, process: int, executor: int) -> int:
     """The next iteration follows at once: the thread keeps its turn among its equals."""
     code = fire(m, m[executor + LOOP_STIMULUS], 0)
-    if code == 0:
+    if code == 0 and m[executor + KEEPS_TURN]:
         size = QUEUE_CAPTURES + m[process + CAPTURES_END] - m[process + CAPTURES]
         place = m[process + FIRST_PLACE] + size
         if place == m[process + QUEUE] + m[PLACES] * size:

@@ -141,8 +141,9 @@ NOT_LISTENING, BEGINS_TO_LISTEN, HAS_ASKED, LISTENS = range(4)
 # Its handles, and sets of them: it calls if all of one set are ready.
 HANDLES, HANDLES_END, TRIGGER_SETS, TRIGGER_SETS_END, IS_TRIGGERED = range(21, 26)
 # Its loop: a stream of sleeps, the least distance of their ends, the last end, a period, the time up to which it has planned, to what
-# that sleep is cut, and what begins an iteration.
-SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM, EXECUTOR_SIZE = range(26, 35)
+# that sleep is cut, and what begins an iteration; whether that is one of its own, or of the next executor of its thread.
+SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM = range(26, 34)
+KEEPS_TURN, EXECUTOR_SIZE = range(34, 36)
 
 # A handle: a timer is due at a time and every period; of the others, messages are kept, or a flag was set at a time.
 HANDLE_KIND, NEXT_CALL, TIMER_PERIOD, KEPT_FIRST, KEPT_LAST, KEPT_NUMBER, DEPTH, OVERWRITES = range(8)

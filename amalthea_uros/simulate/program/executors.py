@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
-from amalthea_uros.executors.semantics.readiness import is_message, shares_session
+from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of, why_unknown
 from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
-from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, TriggerKind
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, ThreadPlace, TriggerKind
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
@@ -25,7 +25,7 @@ from amalthea_uros.simulate.program.wire_programs import add_parts
 from amalthea_uros.simulate.sampling.streams import durations
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.touching import awaited
-from amalthea_uros.units import time_text
+from amalthea_uros.units import Interval, Time, time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body
@@ -70,7 +70,10 @@ class ExecutorRecords:
         sets, sets_end = image.items(
             [image.items([*(handles[name] for name in each), 0])[0] for each in _trigger_sets(executor)]
         )
-        begin = self._begin(executor)
+        of_thread = thread_of(executor, resources.context.system.executors)
+        following = of_thread[(of_thread.index(executor) + 1) % len(of_thread)]
+        # The iteration of the last one is followed by that of the first.
+        begin = self._begin(executor) if executor is of_thread[-1] else layout.NEVER
         fields = {
             layout.READER_PROCESS: resources.processes[executor.task],
             layout.INBOX: self.messages.inboxes[executor.name],
@@ -91,7 +94,8 @@ class ExecutorRecords:
             layout.LOOP_PERIOD: 0 if loop.period is None else time(loop.period),
             layout.INVOCATION: -1,
             layout.SLEEP_RESOLUTION: time(SLEEP_RESOLUTION),
-            layout.LOOP_STIMULUS: resources.stimuli[iterations_name(executor.name)],
+            layout.LOOP_STIMULUS: resources.stimuli[iterations_name(following.name)],
+            layout.KEEPS_TURN: int(following is executor),
             layout.LOOP_ALARM: self.messages.alarm(layout.NEXT_ITERATION, record, at=begin),
         }
         image.put(record, fields)
@@ -106,9 +110,9 @@ class ExecutorRecords:
 
     def _sleeps(self, executor: Executor) -> int:
         """The stream of sleeps; 0 if it does not sleep."""
-        if executor.loop.kind is not LoopKind.SLEEPING or not executor.loop.sleep:
+        sleep = sleep_of(executor) if executor.place is None else _sleep_at(executor.place)
+        if executor.loop.kind is not LoopKind.SLEEPING or not sleep.upper:
             return 0
-        sleep = sleep_of(executor)
         source = RandomSource(self.resources.options.seed, f"sleep of {executor.name}")
         times = Boundaries(lower=sleep.lower, upper=sleep.upper)
         return self.resources.stream(durations(times, Fraction(self.resources.units), self.resources.options.mode, source))
@@ -137,6 +141,11 @@ class ExecutorRecords:
         asked_at = self.messages.handles[executor, handle.name] + layout.RELEASED
         fields = {layout.EXECUTION_NUMBER: number, layout.ASKED_AT: asked_at}
         return self.resources.image.record(layout.EXECUTION_SIZE, fields)
+
+
+def _sleep_at(place: ThreadPlace) -> Interval[Time]:
+    """The sleep after an iteration of one of several executors of a thread."""
+    return Interval(place.sleep - place.sleep_early, place.sleep)
 
 
 def _is_call(activity: Activity, runnable: str) -> bool:
@@ -229,6 +238,12 @@ class IterationCompiler:
         code.add(layout.PLAN_ITERATION, self.record)
 
     def _check(self) -> None:
+        reason = why_unknown(self.executor, self.body.context.system.executors)
+        if reason:
+            raise UnknownError(reason)
+        for other in thread_of(self.executor, self.body.context.system.executors):
+            if other.task not in self.body.resources.processes:
+                raise UnknownError(f"{other.name!r}, which spins in the same loop, is not simulated")
         for handle in self.executor.handles:
             self._check_arrivals(handle)
             for publication in handle.publications:

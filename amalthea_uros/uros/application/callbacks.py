@@ -108,7 +108,7 @@ def callbacks_of(application: Application, middleware: Middleware, notes: Notes)
         callback
         for node in application.nodes
         for kind, section in sections_of(node)
-        if (callback := _callback(kind, section, node, serving, notes)) is not None
+        if (callback := _callback(kind, section, node, application.nodes, serving, notes)) is not None
     ]
     return tuple(found)
 
@@ -140,12 +140,17 @@ def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> CallbackS
 
 
 def _callback(
-    kind: CallbackKind, section: CallbackSection, node: NodeSection, serving: Serving, notes: Notes
+    kind: CallbackKind,
+    section: CallbackSection,
+    node: NodeSection,
+    nodes: Sequence[NodeSection],
+    serving: Serving,
+    notes: Notes,
 ) -> Callback | None:
     executor, in_executor = serving.place(section, node, is_of_middleware=kind in _OF_MIDDLEWARE)
     needs_interval = not _may_be_unknown(section, kind) or executor.loop is None
     interval = _interval(section, needs_interval, notes)
-    outgoing = tuple(outgoing_messages(section, node, interval or SECOND, notes))
+    outgoing = tuple(outgoing_messages(section, node, nodes, interval or SECOND, notes))
     if interval is None and needs_interval:
         return None
     incoming = None if interval is None else incoming_message(section, interval)

@@ -14,6 +14,7 @@ from amalthea_uros.spec.application import (
     CallbackSection,
     Client,
     NodeSection,
+    Publisher,
     ServiceSection,
     Subscription,
 )
@@ -123,10 +124,23 @@ def incoming_message(section: CallbackSection, interval: Time) -> Message | None
     )
 
 
-def outgoing_messages(section: CallbackSection, node: NodeSection, interval: Time, notes: Notes) -> Iterator[Message]:
+def _publisher(topic: str, node: NodeSection, nodes: Sequence[NodeSection]) -> Publisher | None:
+    """The publisher of a topic: that of the node, else the only one of the other nodes."""
+    own = next((publisher for publisher in node.publishers if publisher.topic == topic), None)
+    others = [publisher for each in nodes for publisher in each.publishers if publisher.topic == topic]
+    return own or (others[0] if len(others) == 1 else None)
+
+
+def outgoing_messages(
+    section: CallbackSection, node: NodeSection, nodes: Sequence[NodeSection], interval: Time, notes: Notes
+) -> Iterator[Message]:
     """What a callback sends: messages to topics, requests to services and goals to actions, and the responses of its own ones.
 
     An action server sends a feedback message and the result for each goal.
+
+    Parameters
+    ----------
+    nodes : of the application; a callback can publish with a publisher of another node than its own
     """
 
     def message(kind: MessageKind, topic: str, size: DataSize, origin: Location | None, *, reliable: bool = True) -> Message:
@@ -136,9 +150,9 @@ def outgoing_messages(section: CallbackSection, node: NodeSection, interval: Tim
 
     owner = f"node {node.name!r}"
     for index, topic in enumerate(section.publishes):
-        publisher = next((publisher for publisher in node.publishers if publisher.topic == topic), None)
+        publisher = _publisher(topic, node, nodes)
         if publisher is None:
-            topics = [publisher.topic for publisher in node.publishers]
+            topics = [publisher.topic for each in nodes for publisher in each.publishers]
             notes.undefined("publisher", topic, topics, section.location("publishes", index), owner=owner)
         else:
             is_reliable = publisher.reliability == "reliable"

@@ -33,6 +33,7 @@ class PlannedTask:
     period : minimum time between two activations; None if unknown
     priority : as set in the description; None to assign one
     wins_ties : whether it gets a higher priority than other tasks of the same period
+    thread : tasks with the same one are parts of one thread, with one priority; "" for a thread of its own
     overhead : what the description states for it; `uros.overheads` makes activities of it
     """
 
@@ -46,6 +47,7 @@ class PlannedTask:
     preemption: Preemption = Preemption.PREEMPTIVE
     activation_limit: int = 1
     wins_ties: bool = False
+    thread: str = ""
     overhead: OverheadSection | None = None
     origin: Location | None = None
 

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, lowest
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind, ThreadLoop, WaitBehaviour
 from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.spec import executors as spec
-from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.os import OsSection, SleepTicks
-from amalthea_uros.units import SECOND, Time, down, ticks_of_time, time_text, up
+from amalthea_uros.spec.loops import LoopSection
+from amalthea_uros.spec.os import OsSection
+from amalthea_uros.units import SECOND, Time, down, ticks_of_time, up
 from amalthea_uros.uros.application.callbacks import Callback
-from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.executor_runnables import ExecutorRunnables, spin_name
 from amalthea_uros.uros.assembly.planned import PlannedTask
@@ -23,11 +22,11 @@ from amalthea_uros.uros.executors.activation import activation
 from amalthea_uros.uros.executors.checks import check_executor
 from amalthea_uros.uros.executors.handles import handle_names, handles_of, trigger_of
 from amalthea_uros.uros.executors.iterations import has_one_message_per_iteration, iteration_activities, polls_before_timers
+from amalthea_uros.uros.executors.sleeps import slept
+from amalthea_uros.uros.executors.threads import thread_items, why_unknown_time
 
 #: Iterations are executed one after the other, however many are due.
 _UNLIMITED = 1_000_000
-#: Of an operating system whose tick is known, and nothing else: a sleep can end a tick before or after.
-_INEXACT = SleepTicks.model_construct(early=1, late=1)
 
 
 def add_looping_executor(
@@ -37,6 +36,7 @@ def add_looping_executor(
     bodies: Mapping[str, Runnable],
     activates: Mapping[str, Sequence[str]],
     is_alone: bool,
+    of_thread: Sequence[Callback],
 ) -> None:
     """Add an executor with a loop, and the task of its iterations.
 
@@ -45,10 +45,13 @@ def add_looping_executor(
     callbacks : that it has handles of, in their order
     bodies : the runnable of each callback
     activates : the task that it activates for each callback that has one
-    is_alone : whether no other thread uses the middleware
+    is_alone : whether nothing else uses the middleware
+    of_thread : callbacks of all executors of its thread
     """
     core = context.core(section.core, section.location("core"))
     executor = _executor(context, section, callbacks, bodies, activates, core)
+    if (busy := _busy_wait(context, executor, core)) is not None:
+        executor = replace(executor, busy_wait=busy)
     if polls_before_timers(executor):
         executor = replace(executor, poll=_poll(context, executor, core))
     least = _least_time(context.runnables[executor.spin], core, context)
@@ -62,12 +65,34 @@ def add_looping_executor(
             stimuli=tuple(map(context.stimuli.add, activation(executor, callbacks, least, section.offset))),
             activities=iteration_activities(executor, exclusive=exclusive, poll=executor.poll),
             # Priorities follow the fastest callback.
-            period=min((each.min_interval for each in callbacks if each.interval is not None), default=None),
+            period=min((each.min_interval for each in of_thread if each.interval is not None), default=None),
             priority=section.priority,
             deadline=section.deadline,
             activation_limit=1 if executor.loop.sleep and not executor.loop.pace else _UNLIMITED,
             overhead=section.overhead,
             wins_ties=True,
+            thread="" if executor.place is None else executor.place.thread,
+            origin=section.location(),
+        )
+    )
+
+
+def add_sending_thread(context: AssemblyContext, section: spec.ExecutorSection) -> None:
+    """Add the thread of a section in whose loop nothing spins: nobody knows how often and for how long it executes."""
+    stimulus = Custom(
+        name=f"rounds_of_{section.name}",
+        description=f"how often and how long {section.name!r} sends outside of callbacks is not specified",
+        origin=section.location(),
+    )
+    context.tasks.append(
+        PlannedTask(
+            name=section.name,
+            core=context.core(section.core, section.location("core")),
+            stimuli=(context.stimuli.add(stimulus),),
+            activities=(Execute(demand=Demand()),),
+            period=None,
+            priority=section.priority,
+            overhead=section.overhead,
             origin=section.location(),
         )
     )
@@ -95,22 +120,25 @@ def _executor(
                 context.runnables[runnable.name] = runnable
         own_take = take if take.activities and callback.in_executor else None
         handles += handles_of(callback, own_take, body, context.profile)
-    waiting = context.profile.waiting
+    waiting, os = context.profile.waiting, context.description.os
+    items = thread_items(section.name, middleware)
     return Executor(
         name=section.name,
         task=section.name,
         spin=spin_name(section.name),
-        loop=_loop(section.loop, waiting, context.description.os),
+        loop=_loop(section.loop, waiting, os) if items is None else items.loop(section.name, os),
         handles=tuple(handles),
         trigger=trigger_of(section, {callback.name: handle_names(callback) for callback in callbacks}, context.notes),
         takes_first=section.semantics == "LET",
         waiting=waiting,
         session="session" if middleware.multithread else None,
+        place=None if items is None else items.place(section.name, os),
+        unknown=why_unknown_time(section.name, middleware),
         origin=section.location(),
     )
 
 
-def _loop(section: spec.LoopSection, waiting: WaitBehaviour, os: OsSection) -> ThreadLoop:
+def _loop(section: LoopSection, waiting: WaitBehaviour, os: OsSection) -> ThreadLoop:
     """The loop that a section describes, on an operating system that counts sleeps in ticks.
 
     See ros2/rclc `rclc/src/rclc/executor.c`: `rclc_executor_spin` is an endless `spin_some`; `rclc_executor_spin_period` calls
@@ -132,48 +160,16 @@ def _loop(section: spec.LoopSection, waiting: WaitBehaviour, os: OsSection) -> T
     return ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=section.spin)
 
 
-class Sleep(NamedTuple):
-    """How long a thread sleeps when it asks for some time.
-
-    Attributes
-    ----------
-    pace : minimum time between the ends of two sleeps that follow each other
-    """
-
-    least: Time
-    most: Time
-    pace: Time
-
-
-def slept(sleep: Time, os: OsSection) -> Sleep:
-    """How long a thread sleeps when it asks for some time.
-
-    Ticks come independently of when the thread starts to sleep. So `vTaskDelay(1)` of FreeRTOS, which ends at the next tick, sleeps
-    for 0 to 1 ticks; sleeps that must not be too short, as in Zephyr, wait for one tick more. As sleeps end at ticks, and the next
-    one is counted from the tick at which it begins or from a later one, the ends of two sleeps are whole ticks apart: at least 1 for
-    `vTaskDelay(1)`, although the sleep between them can take no time.
-    """
-    if not sleep or os.tick is None:
-        return Sleep(sleep, sleep, sleep)
-    rule = os.sleep_ticks or _INEXACT
-    ticks = -(-sleep // os.tick)
-    least, pace = max(0, ticks - rule.early), max(0, ticks - max(0, rule.early - 1))
-    return Sleep(least * os.tick, (ticks + rule.late) * os.tick, pace * os.tick)
-
-
-def check_sleeps(description: Description, notes: Notes) -> None:
-    """Report sleeps that are no whole number of ticks, and so last longer or shorter than they say."""
-    os = description.os
-    for executor in description.middleware.stated_executors:
-        if executor.loop is None or os.tick is None or executor.loop.sleep % os.tick == 0:
-            continue
-        least, most, _ = slept(executor.loop.sleep, os)
-        message = (
-            f"{executor.name!r} sleeps {time_text(least)} to {time_text(most)} instead of {time_text(executor.loop.sleep)}: "
-            f"{os.title} counts in ticks of {time_text(os.tick)}"
-        )
-        advice = "Sleep for a whole number of ticks, or shorten the tick of the operating system, and set 'tick' under 'os'."
-        notes.warning("UR161", message, executor.loop.location("sleep"), advice)
+def _busy_wait(context: AssemblyContext, executor: Executor, core: str) -> str | None:
+    """Add the runnable in which the thread of an executor waits without sleeping; None if it does not."""
+    items = thread_items(executor.name, context.description.middleware)
+    times = None if items is None else items.busy_wait(executor.name, context.description.os)
+    if times is None:
+        return None
+    frequency, name = context.controller.frequencies[core], f"{executor.name}_Busy_Wait"
+    ticks = Boundaries(lower=down(ticks_of_time(times.lower, frequency)), upper=up(ticks_of_time(times.upper, frequency)))
+    context.runnables[name] = Runnable(name=name, activities=(Execute(demand=Demand(ticks=ticks)),), origin=executor.origin)
+    return name
 
 
 def _poll(context: AssemblyContext, executor: Executor, core: str) -> str:

@@ -63,11 +63,13 @@ def _check_timeout(executor: Executor, section: spec.ExecutorSection, notes: Not
 
 
 def _check_polling(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
-    """Loops that never wait.
+    """Loops that never wait; where several executors spin in one, it waits if any of them does.
 
     Timeouts are cut to whole milliseconds (micro-ROS/rmw_microxrcedds `rmw_wait.c`); a due timer makes the timeout 0 (ros2/rcl
     `rcl/src/rcl/wait.c`), also if the trigger condition keeps it back.
     """
+    if executor.place is not None:
+        return
     loop, resolution, reason = executor.loop, executor.waiting.resolution, iterations_follow_at_once(executor)
     where = section.loop.location() if section.loop is not None else section.location()
     if reason and messages(executor):

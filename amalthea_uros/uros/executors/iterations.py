@@ -56,7 +56,8 @@ def iteration_activities(executor: Executor, *, exclusive: bool, poll: str | Non
     """
     spin = Call(runnable=executor.spin)
     body = _Iteration(executor, exclusive, poll).body()
-    return (spin, *body)
+    after = () if executor.busy_wait is None else (Call(runnable=executor.busy_wait),)
+    return (spin, *body, *after)
 
 
 def polls_before_timers(executor: Executor) -> bool:

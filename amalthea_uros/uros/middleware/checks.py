@@ -124,7 +124,7 @@ def _check_blocking(callbacks: Sequence[Callback], profile: Profile, notes: Note
     outside = [callback for callback in senders if not (callback.in_executor and callback.executor in loops)]
     _check_waiting_outside(outside, profile, notes)
     _check_recovery(callbacks, profile, notes)
-    if loops and (outside or len(profile.middleware.stated_executors) > 1):
+    if loops and (outside or profile.middleware.thread_count > 1):
         _check_sessions(senders, tuple(loops.values()), profile, notes)
 
 

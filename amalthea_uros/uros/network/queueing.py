@@ -19,6 +19,8 @@ from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import Counter, Custom, InterProcess, Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.perf.system import System
+from amalthea_uros.spec.executors import ExecutorSection
+from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import body_name
 from amalthea_uros.uros.assembly.executor_runnables import notification_name
@@ -28,6 +30,8 @@ from amalthea_uros.uros.transports.line import Line, span_of, time_on
 from amalthea_uros.uros.transports.messages import WireMessage, acknowledgement_name, opposite
 
 _AT_ONCE = Span(most=0)
+#: Of what is sent an unknown number of times: the usual MTU.
+_LONGEST_PART = 512
 #: Why the arrivals of messages are unknown.
 _MEAN_ONLY = "only the mean of 'to_controller' of the agent is known"
 
@@ -118,6 +122,24 @@ class Queueing:
             interval=frame.period,
             frame=frame,
             origin=frame.origin,
+        )
+
+    def outside(self, executor: ExecutorSection, reason: str) -> Queued:
+        """The messages that the loop of a thread sends outside of callbacks."""
+        name, length = f"{executor.name}_outside_callbacks", 63 if isinstance(self.line.section, Can | CanFd) else _LONGEST_PART
+        return Queued(
+            transmission=Transmission(
+                name=name,
+                wire=self.line.name,
+                direction=Direction.TO_AGENT,
+                purpose=Purpose.DATA,
+                length=length,
+                agent=_AT_ONCE,
+            ),
+            parts=(length,),
+            stimulus=Custom(name=name, description=reason, origin=executor.location()),
+            interval=None,
+            origin=executor.location(),
         )
 
     def _received(self, message: WireMessage) -> Iterator[Queued]:

@@ -1,0 +1,120 @@
+"""The loops of threads: the items in the same loop as a call that lets an executor spin, in their order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
+from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind, Thread
+from amalthea_uros.source.ports import MILLISECOND
+from amalthea_uros.source.sleeps import SLEEPS, WaitCall, wait_of
+from amalthea_uros.source.walk import FunctionCall
+from amalthea_uros.units import Time
+
+#: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent -> what they do, and the position of their attempts.
+_AGENT = {
+    "rmw_uros_ping_agent": (CodeLoopKind.PING, 1),
+    "rmw_uros_ping_agent_options": (CodeLoopKind.PING, 1),
+    "rmw_uros_sync_session": (CodeLoopKind.SYNC, None),
+}
+ROUND_TRIPS = tuple(_AGENT)
+SENDS = ("rcl_publish", "rcl_send_request")
+
+
+def add_spins(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
+    """Add to each executor how it spins, with everything else that is in the same loop."""
+    for call in calls:
+        if call.name in SPIN_KINDS and (executor := executor_of(facts, call)) is not None:
+            if any(spin.place == call.place for spin in executor.spins):
+                continue
+            executor.spins.append(_spin(facts, call, calls))
+
+
+def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall]) -> Spin:
+    kind, is_loop = SPIN_KINDS[call.name], is_repeated(call)
+    return Spin(
+        kind=kind,
+        time=_timeout(call),
+        place=call.place,
+        # A sleep before an endless loop, or in setup(), is not part of the iteration.
+        items=tuple(_items(facts, call, calls)) if kind is SpinKind.SOME and is_loop else (),
+        is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or is_loop,
+    )
+
+
+def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall], threads: Mapping[str, Thread]) -> None:
+    """Add the loops that send outside of callbacks, and in which no executor spins.
+
+    Parameters
+    ----------
+    threads : by the scopes of the functions that they begin with
+    """
+    published = {place for places in facts.publishes.values() for place in places.values()}
+    known = published | {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
+    for call in calls:
+        sender = call.argument(0)
+        is_sending = call.name in SENDS and sender is not None and sender.key in facts.entities
+        if not is_sending or not is_repeated(call) or call.root is None or call.place in known:
+            continue
+        items = tuple(_items(facts, call, calls))
+        known |= {item.place for item in items}
+        thread = threads.get(call.root.scope)
+        name = thread.name if thread is not None else call.root.name
+        facts.senders.append(CodeSender(name=name, thread=thread, items=items, place=call.place))
+
+
+def is_repeated(call: FunctionCall) -> bool:
+    """Whether a call is in a loop; `loop` of Arduino is one."""
+    return bool(call.loops) or (call.root is not None and call.root.name == "loop")
+
+
+def _timeout(call: FunctionCall) -> Time | None:
+    given = call.argument(1)
+    number = given.number if given is not None else None
+    return Time(number * NANOSECOND) if number is not None and number >= 0 else None
+
+
+def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall]) -> Iterator[CodeLoopItem]:
+    """The items in the same loop, and not in another branch of a choice, such as another state."""
+    for call in calls:
+        if call.root is not spin.root or call.loops != spin.loops or call.excludes(spin):
+            continue
+        item = _item(facts, call)
+        if item is not None:
+            yield item if call.always_with(spin) or item.kind not in _TIMED else _sometimes(item)
+
+
+_TIMED = (CodeLoopKind.SLEEP, CodeLoopKind.BUSY_WAIT)
+
+
+def _sometimes(item: CodeLoopItem) -> CodeLoopItem:
+    return CodeLoopItem(kind=item.kind, time=None, place=item.place, note="not in each iteration")
+
+
+def _item(facts: CodeFacts, call: FunctionCall) -> CodeLoopItem | None:
+    if call.name in SLEEPS:
+        return _wait(wait_of(call, facts), call)
+    if call.name in _AGENT:
+        kind, position = _AGENT[call.name]
+        return CodeLoopItem(kind=kind, time=_answer(call, position), place=call.place)
+    if call.name in SENDS and (sender := call.argument(0)) is not None:
+        return CodeLoopItem(kind=CodeLoopKind.PUBLISH, time=None, place=call.place, of=sender.key)
+    if SPIN_KINDS.get(call.name) is SpinKind.SOME and (executor := executor_of(facts, call)) is not None:
+        return CodeLoopItem(kind=CodeLoopKind.SPIN, time=_timeout(call), place=call.place, of=executor.key)
+    return None
+
+
+def _wait(wait: WaitCall, call: FunctionCall) -> CodeLoopItem | None:
+    if wait.time == 0:
+        return None
+    kind = CodeLoopKind.BUSY_WAIT if wait.is_busy else CodeLoopKind.SLEEP
+    return CodeLoopItem(kind=kind, time=wait.time, place=call.place, note=wait.note)
+
+
+def _answer(call: FunctionCall, attempts: int | None) -> Time | None:
+    """The longest time until an answer of the agent comes, or none."""
+    given, number = call.argument(0), call.argument(attempts) if attempts is not None else None
+    once, times = given.number if given is not None else None, number.number if number is not None else None
+    if attempts is None:
+        times = 1
+    return None if once is None or times is None or once < 0 or times < 0 else Time(once * times * MILLISECOND)

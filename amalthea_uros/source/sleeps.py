@@ -1,0 +1,136 @@
+"""Calls that let a thread sleep: by the operating system and the port they sleep, wait busily, or return at once."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from amalthea_uros.source.facts import CodeFacts
+from amalthea_uros.source.ports import MICROSECOND, MILLISECOND, SECOND
+from amalthea_uros.source.scope import Expression, called
+from amalthea_uros.source.walk import FunctionCall
+from amalthea_uros.units import Time, time_text
+
+#: Functions that wait without sleeping: `HAL_Delay` of the HAL of STM32 reads its tick until it is over.
+_BUSY_MILLISECONDS = ("HAL_Delay",)
+_BUSY_MICROSECONDS = ("delayMicroseconds", "esp_rom_delay_us", "ets_delay_us", "busy_wait_us", "k_busy_wait")
+#: Function -> unit of its only argument.
+_UNITS = {
+    **dict.fromkeys(("usleep", "sleep_us", "k_usleep", *_BUSY_MICROSECONDS), MICROSECOND),
+    **dict.fromkeys(("delay", "sleep_ms", "k_msleep", "rclc_sleep_ms", *_BUSY_MILLISECONDS), MILLISECOND),
+    "sleep": SECOND,
+}
+#: Those whose argument is a number of ticks, or is made of a time by a macro.
+_TICKS = ("vTaskDelay", "osDelay")
+#: Those whose duration depends on when they are called.
+_UNTIL = (
+    "vTaskDelayUntil",
+    "xTaskDelayUntil",
+    "osDelayUntil",
+    "k_sleep",
+    "sleep_for",
+    "this_thread::sleep_for",
+    "nanosleep",
+    "sleep_until",
+)
+
+SLEEPS = frozenset({*_UNITS, *_TICKS, *_UNTIL})
+
+#: Macros and constructors of durations -> unit of their argument.
+_DURATIONS = {
+    **dict.fromkeys(("K_MSEC", "pdMS_TO_TICKS", "milliseconds", "K_TIMEOUT_MS"), MILLISECOND),
+    **dict.fromkeys(("K_USEC", "microseconds"), MICROSECOND),
+    **dict.fromkeys(("K_SECONDS", "seconds"), SECOND),
+}
+#: What milliseconds are divided by to make ticks of them.
+_TICK_LENGTHS = ("portTICK_PERIOD_MS", "portTICK_RATE_MS")
+
+
+def _sleep_time(call: FunctionCall, tick_rate: Fraction | None) -> Time | None:
+    """How long a call sleeps, None if it is not constant.
+
+    Parameters
+    ----------
+    tick_rate : ticks per second; None if unknown: then a number of ticks is not a time
+    """
+    given = call.argument(0)
+    if given is None:
+        return None
+    if call.name in _UNITS:
+        number = given.number
+        return None if number is None or number < 0 else Time(number * _UNITS[call.name])
+    if call.name in _TICKS:
+        return _whole_ticks(given, tick_rate)
+    return _duration(given)
+
+
+def _duration(given: Expression) -> Time | None:
+    """The time that a macro or constructor such as `K_MSEC(10)` makes."""
+    own = given.resolved
+    if own.node.type != "call_expression":
+        return None
+    name, arguments = called(own.node)
+    unit = _DURATIONS.get(name.rpartition("::")[2])
+    if unit is None or len(arguments) != 1:
+        return None
+    number = own.at(arguments[0]).number
+    return None if number is None or number < 0 else Time(number * unit)
+
+
+def _whole_ticks(given: Expression, tick_rate: Fraction | None) -> Time | None:
+    """A delay in ticks; a time is cut to whole ticks, so a short one does not sleep at all."""
+    wanted = _duration(given) or _divided(given)
+    if wanted is not None:
+        if tick_rate is None:
+            return wanted
+        return Time(int((wanted * tick_rate) // SECOND * SECOND / tick_rate))
+    ticks = given.number
+    return None if ticks is None or ticks < 0 or tick_rate is None else Time(int(ticks * SECOND / tick_rate))
+
+
+def _divided(given: Expression) -> Time | None:
+    node = given.resolved.node
+    left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+    if node.type != "binary_expression" or left is None or right is None:
+        return None
+    if given.at(right).text not in _TICK_LENGTHS:
+        return None
+    number = given.at(left).number
+    return None if number is None or number < 0 else Time(number * MILLISECOND)
+
+
+class WaitCall(NamedTuple):
+    """The wait of a call.
+
+    Attributes
+    ----------
+    time : how long it waits; 0 if it returns at once, None if that is not constant
+    is_busy : whether it executes meanwhile, so that nothing of lower priority does
+    note : why it does not do what it seems to
+    """
+
+    time: Time | None
+    is_busy: bool = False
+    note: str = ""
+
+
+def wait_of(call: FunctionCall, facts: CodeFacts) -> WaitCall:
+    """The wait of a call that seems to let a thread sleep."""
+    rate = facts.tick_rate
+    time = _sleep_time(call, rate if facts.ticks_are_stated else None)
+    if call.name in (*_BUSY_MILLISECONDS, *_BUSY_MICROSECONDS):
+        return WaitCall(time, is_busy=True)
+    if call.name == "usleep" and time is not None:
+        if facts.rtos == "zephyr" and time >= SECOND:
+            # zephyr lib/posix/sleep.c
+            return WaitCall(Time(0), note=f"usleep of Zephyr refuses {time_text(time)}: it takes less than 1 s")
+        if facts.port == "espidf" and rate is not None and time * rate < SECOND:
+            # espressif/esp-idf components/newlib/src/time.c
+            return WaitCall(time, is_busy=True, note="usleep of ESP-IDF waits without sleeping for less than a tick")
+    if call.name in _TICKS and rate is not None and time is not None:
+        tick = time_text(Time(int(SECOND / rate)))
+        if time == 0:
+            return WaitCall(time, note=f"it is less than a tick of {tick}")
+        if time * rate < SECOND:
+            return WaitCall(None, note=f"it is less than a tick of {tick}, which is the default, and then no sleep")
+    return WaitCall(time)

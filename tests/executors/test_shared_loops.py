@@ -1,0 +1,207 @@
+"""Several executors in the loop of a thread, busy waits, and what a loop does besides; the figures are computed by hand."""
+
+from random import Random
+
+import pytest
+from effort import IS_THOROUGH
+from fuzzing.contradictions import contradictions
+
+from amalthea_uros.bridge.build import build_model
+from amalthea_uros.bridge.extract import extract
+from amalthea_uros.errors import ReadError
+from amalthea_uros.services.analyze import analyze
+from amalthea_uros.services.build import describe
+from amalthea_uros.services.simulate import simulate
+from amalthea_uros.spec.read import read_description
+from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import MILLISECOND as MS
+
+HEAD = """amuros: 1
+name: app
+hardware: {platform: generic, frequency: 100 MHz}
+"""
+WIRE = """  transport: {udp: {bitrate: 10 Mbit/s, latency: {min: 0, max: 500 us}}}
+  agent: {to_controller: {min: 100 us, max: 600 us}, to_host: {min: 100 us, max: 1 ms}, acknowledgement: {min: 200 us, max: 800 us}}
+  limits: {RMW_UXRCE_MAX_HISTORY: 16}
+"""
+
+
+def text_of(loop, callbacks, executors=1, tasks="", others=""):
+    """A description whose executors e0, e1 ... spin in the loop of e0; callbacks are lines of timers or subscriptions."""
+    found = f"{HEAD}middleware:\n  executors:\n"
+    for number in range(executors):
+        stated = f", priority: 5, loop: [{', '.join(loop)}]" if number == 0 else ""
+        found += f"    - {{name: e{number}{stated}, execution_time: {{base: 20 us, per_message: 10 us}}}}\n"
+    found += (
+        others
+        + WIRE
+        + tasks
+        + "application:\n  nodes:\n    - name: n\n      publishers: [{topic: p, message_size: 8 B, reliability: best-effort}]\n"
+    )
+    for key, lines in callbacks.items():
+        found += f"      {key}:\n" + "".join(f"        - {{{line}}}\n" for line in lines)
+    return found
+
+
+def timer(name, period, time, executor="e0", more=""):
+    return f"name: {name}, period: {period} ms, execution_time: {time} us, runs_in: {executor}{more}"
+
+
+def subscription(name, rate, time, executor="e0"):
+    message = f"topic: {name}_topic, message_size: 8 B, reliability: best-effort"
+    return f"name: {name}, {message}, rate: {rate} Hz, execution_time: {time} us, runs_in: {executor}"
+
+
+TWO = text_of(
+    ["{spin_some: 10 ms}", "{spin_some: 100 ms, executor: e1}"],
+    {"timers": [timer("t", 20, 100)], "subscriptions": [subscription("a", 1, 200), subscription("b", 1, 300, "e1")]},
+    executors=2,
+)
+
+
+def test_a_timer_waits_for_the_other_executor_of_its_loop():
+    # Ready just after a check: what is left of this iteration, 20 + 100 + 210 us; the wait of 100 ms and an iteration of the other one,
+    # 20 + 310 us; then the check, 20 us, and its place in the iteration. As the overhead can be on either side of a check, it counts
+    # at both ends of the time until the call, 20 us more.
+    found = analyze(TWO).executors["e0"].handles["t"]
+    assert 100 * MS + 680 * US <= found.lateness.most <= 100 * MS + 1 * MS
+    assert found.lost is not None
+    # 100 ms after it is due, 5 expirations have passed.
+    assert found.lost.most == 5
+    observed = simulate(TWO, "20 s").executors["e0"].handles["t"]
+    assert 90 * MS < observed.lateness.max <= found.lateness.most
+    assert observed.lost > 0
+
+
+def test_executors_of_one_thread_are_not_several_threads():
+    assert {finding.rule for finding in analyze(TWO).findings} & {"EXE008", "UR106", "EXE022"} == set()
+
+
+def test_the_order_and_the_sleeps_of_a_loop_are_kept():
+    # Nothing arrives: e0 waits 10 ms, the thread sleeps 3 ms, e1 waits 20 ms, and it sleeps 7 ms: a round of 40 ms and the overheads.
+    loop = ["{spin_some: 10 ms}", "{sleep: 3 ms}", "{spin_some: 20 ms, executor: e1}", "{sleep: 7 ms}"]
+    callbacks = {
+        "subscriptions": [
+            "name: b, topic: x, message_size: 8 B, reliability: best-effort, rate: 0.001 Hz, execution_time: 1 us, runs_in: e1",
+            subscription("a", 0.001, 1),
+        ]
+    }
+    text = text_of(loop, callbacks, executors=2)
+    rounds = simulate(text, "10 s").executors["e0"].iterations
+    assert 10_000 // 41 <= rounds <= 10_000 // 40 + 2
+    found = analyze(text).executors
+    assert found["e0"].loop.most == found["e1"].loop.most
+    assert 40 * MS < found["e0"].loop.most < 41 * MS
+    assert found["e0"].loop.least >= 10 * MS
+
+
+def test_a_busy_wait_lets_nothing_of_lower_priority_execute():
+    tasks = "tasks:\n  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
+    callbacks = {"subscriptions": [subscription("a", 1, 100)]}
+    waiting = {
+        kind: analyze(text_of(["{spin_some: 1 ms}", f"{{{kind}: 5 ms}}", "{sleep: 2 ms}"], callbacks, tasks=tasks)).processes[
+            "Low"
+        ]
+        for kind in ("busy_wait", "sleep")
+    }
+    # The busy wait of 5 ms, up to a tick of 1 ms more.
+    assert waiting["busy_wait"].response.worst >= waiting["sleep"].response.worst + 5 * MS
+
+
+@pytest.mark.parametrize("item", ["{publish: [p]}", "{ping: 100 ms}", "{sync: 1 s}"])
+def test_what_else_a_loop_does_leaves_its_times_unknown(item):
+    tasks = "tasks:\n  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
+    text = text_of(["{spin_some: 10 ms}", item, "{sleep: 5 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, tasks=tasks)
+    found = analyze(text)
+    assert found.executors["e0"].handles["a"].response.worst is None
+    assert "its loop also" in found.executors["e0"].handles["a"].response.reason
+    assert found.processes["Low"].response is None or found.processes["Low"].response.worst is None
+    assert found.summary.schedulable == "unknown"
+    assert "e0" in {process.name for process in simulate(text, "1 s").left_out}
+
+
+def test_a_thread_that_only_sends_leaves_the_others_unknown():
+    sender = "    - {name: imu, priority: 6, loop: [publish: [p], sleep: 20 ms]}\n"
+    found = analyze(text_of(["{spin_some: 10 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, others=sender))
+    assert found.executors["e0"].handles["a"].response.worst is None
+    assert found.summary.schedulable == "unknown"
+    assert "EXE008" in {finding.rule for finding in found.findings}
+
+
+def test_a_model_keeps_the_thread_of_its_executors(tmp_path):
+    (tmp_path / "app.yaml").write_text(TWO)
+    system = describe(tmp_path / "app.yaml").system
+    assert extract(build_model(system)).system.executors == system.executors
+
+
+@pytest.mark.parametrize(
+    ("loop", "reason"),
+    [
+        ("[sleep: 1 ms]", "expected one 'spin_some' without 'executor'"),
+        ("[spin_some: 1 ms, spin_some: 1 ms]", "expected one 'spin_some' without 'executor'"),
+        ("[spin_some: 1 ms, {spin_some: 1 ms, executor: b}, {spin_some: 1 ms, executor: b}]", "spins twice"),
+        ("[{spin_some: 1 ms, sleep: 1 ms}]", "expected one of"),
+        ("[spin_some: 1 ms, {sleep: 1 ms, executor: b}]", "'executor' has no effect"),
+    ],
+)
+def test_a_loop_that_cannot_be_is_refused(loop, reason, tmp_path):
+    (tmp_path / "app.yaml").write_text(f"{HEAD}middleware: {{executor: {{loop: {loop}}}}}\n")
+    with pytest.raises(ReadError, match=reason):
+        read_description(tmp_path / "app.yaml")
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "reason"),
+    [
+        ("nobody", "", "undefined executor"),
+        ("e1", ", loop: {spin: 1 s}", "and elsewhere"),
+        ("e1", ", priority: 4", "another priority"),
+    ],
+)
+def test_an_executor_spins_in_one_thread(name, more, reason, tmp_path):
+    text = TWO.replace("executor: e1", f"executor: {name}").replace("{name: e1,", f"{{name: e1{more},")
+    (tmp_path / "app.yaml").write_text(text)
+    with pytest.raises(ReadError, match=reason):
+        describe(tmp_path / "app.yaml")
+
+
+def random_text(rng):
+    """An application with up to three executors in a loop, sleeps, busy waits and other tasks."""
+    count = rng.choice([1, 2, 2, 3])
+    loop = [f"{{spin_some: {rng.choice([0, 1, 5, 20])} ms{'' if n == 0 else f', executor: e{n}'}}}" for n in range(count)]
+    for _ in range(rng.choice([0, 1, 1, 2])):
+        item = rng.choice(["sleep: 1 ms", "sleep: 5 ms", "busy_wait: 2 ms", "busy_wait: 500 us"])
+        loop.insert(rng.randrange(len(loop) + 1), f"{{{item}}}")
+    callbacks = {"timers": [], "subscriptions": []}
+    for number in range(count * 2):
+        executor, time = f"e{number % count}", rng.choice([50, 500, 2000])
+        if rng.random() < 0.5:
+            more = (
+                ", publishes: [p]"
+                if rng.random() < 0.2 and not any("publishes" in each for each in callbacks["timers"])
+                else ""
+            )
+            callbacks["timers"].append(timer(f"t{number}", rng.choice([5, 20, 50]), time, executor, more))
+        else:
+            callbacks["subscriptions"].append(subscription(f"s{number}", rng.choice([1, 5, 10]), time, executor))
+    tasks = "tasks:\n  - {name: High, period: 10 ms, priority: 9, execution_time: 500 us}\n"
+    tasks += "  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
+    if rng.random() < 0.3:
+        tasks += "  - {name: Equal, period: 20 ms, priority: 5, execution_time: 1 ms}\n"
+    kept = {key: lines for key, lines in callbacks.items() if lines}
+    return text_of(loop, kept, executors=count, tasks=rng.choice(["", tasks]))
+
+
+@pytest.mark.parametrize("seed", range(300 if IS_THOROUGH else 12))
+def test_nothing_observed_exceeds_a_bound(seed):
+    text = random_text(Random(seed))
+    analysis = analyze(text)
+    for mode in ("sampled", "worst"):
+        simulation = simulate(text, "1 s", seed=seed, mode=mode)
+        assert list(contradictions(analysis, simulation)) == []
+        for executor in simulation.executors:
+            for observed in executor.handles:
+                bound = analysis.executors[executor.name].handles[observed.name]
+                worst, seen = bound.response.worst, observed.response_time
+                assert worst is None or seen is None or seen.max <= worst, (executor.name, observed.name)
+                assert bound.lost is not None or not observed.lost, (executor.name, observed.name)

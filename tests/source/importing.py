@@ -1,0 +1,48 @@
+"""Importing programs, and filling the gaps of what is written with values that are valid."""
+
+import re
+
+from amalthea_uros.services.build import describe
+from amalthea_uros.services.import_code import import_code
+from amalthea_uros.spec.read import read_description
+
+#: A value for each key whose value code cannot tell.
+VALUES = {
+    "frequency": "160 MHz",
+    "transport": "{udp: {bitrate: 10 Mbit/s}}",
+    "bitrate": "10 Mbit/s",
+    "baud_rate": "115200",
+    "message_size": "64 B",
+    "request_size": "64 B",
+    "response_size": "64 B",
+    "rate": "1 Hz",
+    "loop": "{spin_some: 10 ms}",
+    "core": "Core_0",
+    "priority": "3",
+    "trigger": "any",
+    "order": "[]",
+    "events": "false",
+}
+
+
+def filled(text):
+    """A description with a value instead of each gap."""
+    return re.sub(r"(\w+): TODO", lambda match: f"{match[1]}: {VALUES.get(match[1], '20 ms')}", text)
+
+
+def imported(tmp_path, text, name="main.c", **others):
+    """The result for a program, with other files beside it: dots in their names are written as two underscores."""
+    (tmp_path / name).write_text(text)
+    for other, content in others.items():
+        (tmp_path / other.replace("__", ".")).write_text(content)
+    return import_code([tmp_path])
+
+
+def described(result, folder):
+    """The description that a result becomes when its gaps are filled, and the findings about it."""
+    (folder / "app.yaml").write_text(filled(result.text))
+    return read_description(folder / "app.yaml"), describe(folder / "app.yaml").findings
+
+
+def rules(result):
+    return {finding.rule for finding in result.findings}

@@ -1,0 +1,57 @@
+"""The shared programs with the facts that are expected of each; written by hand, like the programs."""
+
+import pytest
+from importing import described, rules
+from support import SHARED
+
+from amalthea_uros.errors import ReadError
+from amalthea_uros.services.analyze import analyze_files
+from amalthea_uros.services.import_code import import_code
+from amalthea_uros.units import MILLISECOND as MS
+
+FOLDER = SHARED / "vectors" / "import"
+#: Program -> texts of the description, and rules of findings.
+EXPECTED = {
+    "two-executors-one-loop.c": (["- spin_some: 10 ms", "- {spin_some: 100 ms, executor: e2}"], {"IMP018"}),
+    "publish-from-second-task.c": (["name: spin", "name: imu", "- publish: [imu]", "- sleep: 20 ms"], {"IMP013", "IMP023"}),
+    "enum-bounds.cpp": (["topic: led/a", "topic: led/b", "name: led1_callback", "name: led2_callback"], set()),
+    "getters.c": (["topic: out", "topic: cmd", "loop: {spin_some: 100 ms, sleep: 10 ms}"], set()),
+    "hal-delay.c": (["priority: 5", "- spin_some: 1 ms", "- busy_wait: 10 ms"], {"IMP008"}),
+    # Nobody says how long a tick is: 10 ms is the default, with which it does not sleep.
+    "delay-below-tick.c": (["loop: {spin_some: 1 ms, sleep: TODO}", "tick: 10 ms"], {"IMP020"}),
+    "reconnection.ino": (["loop: {spin_some: 100 ms}", "name: on_a", "name: on_b"], {"IMP007", "IMP013", "IMP018"}),
+    "zephyr-usleep.c": (["loop: {spin_some: 10 ms, sleep: 1 ms}", "rtos: zephyr"], {"IMP020"}),
+    "publisher-of-other-node.c": (["name: motor", "name: ticks", "publishes: [ticks]"], {"IMP018"}),
+    "unallocated-string.ino": (["name: on_s", "name: on_j"], {"IMP007", "IMP021"}),
+    "odometry-best-effort.ino": (["message_size: TODO # nav_msgs/msg/Odometry: 704 B"], {"IMP022"}),
+    "arduino-wifi.ino": (["tick: 1 ms", "RMW_UXRCE_TRANSPORT: custom", "sleep: 5 ms"], set()),
+}
+pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="the programs are not at hand")
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_a_program_has_the_expected_facts(name):
+    result = import_code([FOLDER / name])
+    texts, expected = EXPECTED[name]
+    assert [text for text in texts if text not in result.text] == []
+    assert rules(result) - {"IMP012"} == expected
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_what_is_written_is_read_when_its_gaps_are_filled(name, tmp_path):
+    _, findings = described(import_code([FOLDER / name]), tmp_path)
+    assert [each for each in findings if each.severity == "error"] == []
+
+
+def test_two_executors_of_one_loop_delay_each_other(tmp_path):
+    described(import_code([FOLDER / "two-executors-one-loop.c"]), tmp_path)
+    (e1, _) = analyze_files(tmp_path / "app.yaml").analysis.executors
+    # 100 ms are true: the wait of the other one; the rest is what both execute, tens of microseconds each as filled in.
+    assert e1.handles["on_timer"].lateness.most > 100 * MS
+    assert e1.handles["on_timer"].lost is not None
+
+
+def test_a_gap_is_never_taken_for_a_value(tmp_path):
+    import_code([FOLDER / "two-executors-one-loop.c"], tmp_path / "app.yaml")
+    with pytest.raises(ReadError):
+        analyze_files(tmp_path / "app.yaml")
