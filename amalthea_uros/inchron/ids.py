@@ -1,0 +1,45 @@
+"""Ids of objects, as the importer of INCHRON forms them from names (am2inc, StableIntrinsicIds).
+
+They stay the same while names stay, so that a project that is written again can replace the one before.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from uuid import UUID, uuid5
+
+from amalthea_uros.inchron.facts import is_a
+from amalthea_uros.inchron.objects import ProjectObject
+
+_ROOT = uuid5(UUID(int=0), "com.inchron.am2inc")
+
+
+def intrinsic_ids(model: ProjectObject) -> dict[ProjectObject, str]:
+    """The ids of a model and of all referable objects in it; unlike the importer's they are unique, also where names are not."""
+    found = {model: _text(_ROOT)}
+    used = set(found.values())
+    _add(model, found[model], found, used)
+    return found
+
+
+def _add(item: ProjectObject, above: str, found: dict[ProjectObject, str], used: set[str]) -> None:
+    counts: dict[str, int] = {}
+    for feature, part in item.parts():
+        own = above
+        if is_a(part.kind, "root.Referable"):
+            number = counts[feature.name] = counts.get(feature.name, -1) + 1
+            path = f"{above}/@{feature.name}"
+            if part.name:
+                path += f".{part.name}"
+            elif feature.many:
+                path += f".{number}"
+            own = _text(uuid5(_ROOT, path))
+            if own in used:
+                own = _text(uuid5(_ROOT, f"{path}#{number}"))
+            used.add(own)
+            found[part] = own
+        _add(part, own, found, used)
+
+
+def _text(uuid: UUID) -> str:
+    return "_" + b64encode(uuid.bytes).decode().rstrip("=")

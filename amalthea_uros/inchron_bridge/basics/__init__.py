@@ -1,0 +1,1 @@
+"""What all tables need: values, comments, the state of one run."""

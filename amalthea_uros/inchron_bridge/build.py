@@ -1,0 +1,76 @@
+"""A system as an INCHRON project."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron_bridge.basics.comments import note, note_whole
+from amalthea_uros.inchron_bridge.basics.exporting import Exporting
+from amalthea_uros.inchron_bridge.tables.chains import build_chains
+from amalthea_uros.inchron_bridge.tables.hardware import build_hardware
+from amalthea_uros.inchron_bridge.tables.os import build_systems
+from amalthea_uros.inchron_bridge.tables.requirements import build_requirements
+from amalthea_uros.inchron_bridge.tables.software import assign_owners, build_graphs, build_software
+from amalthea_uros.inchron_bridge.tables.stimuli import build_stimuli
+from amalthea_uros.perf.hardware import StructureKind
+from amalthea_uros.perf.network import Network
+from amalthea_uros.perf.system import System
+
+_NAME = "New Project"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProjectBuild:
+    """The project of a system.
+
+    Attributes
+    ----------
+    model : its root
+    findings : what has no place in a project, or another form
+    """
+
+    model: ProjectObject
+    findings: tuple[Finding, ...]
+
+
+def build_project(system: System, units: Mapping[tuple[str, int], str] | None = None) -> ProjectBuild:
+    """The project of a system.
+
+    Parameters
+    ----------
+    units : as a model spells its quantities, by the name of the object and the value in the internal unit
+
+    Raises
+    ------
+    WriteError : a name is undefined or not unique.
+    """
+    context = Exporting(system, units or {})
+    systems = [each.name for each in system.hardware.walk() if each.kind is StructureKind.SYSTEM]
+    context.model["name"] = systems[-1] if systems else _NAME
+    build_hardware(context)
+    build_stimuli(context)
+    build_software(context)
+    build_systems(context)
+    build_graphs(context)
+    assign_owners(context)
+    build_chains(context)
+    build_requirements(context)
+    _keep_middleware(context)
+    return ProjectBuild(model=context.model, findings=context.finish())
+
+
+def _keep_middleware(context: Exporting) -> None:
+    """Executors and the network: a project has no classes for them."""
+    system = context.system
+    for executor in system.executors:
+        note_whole(context.need("Process", executor.task, executor.name), "executor", executor)
+    for transmission in system.network.transmissions:
+        note_whole(context.need("Process", transmission.name, transmission.name), "transmission", transmission)
+    network = replace(system.network, transmissions=())
+    if network != Network():
+        note_whole(context.model, "network", network)
+    if system.executors or system.network != Network():
+        note(context.model, version=1)
