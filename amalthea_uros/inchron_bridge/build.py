@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron_bridge.amalthea import AmaltheaDetails, add_details
 from amalthea_uros.inchron_bridge.basics.comments import note, note_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.chains import build_chains
@@ -36,26 +36,28 @@ class ProjectBuild:
     findings: tuple[Finding, ...]
 
 
-def build_project(system: System, units: Mapping[tuple[str, int], str] | None = None) -> ProjectBuild:
+def build_project(system: System, details: AmaltheaDetails | None = None) -> ProjectBuild:
     """The project of a system.
 
     Parameters
     ----------
-    units : as a model spells its quantities, by the name of the object and the value in the internal unit
+    details : what an AMALTHEA model says beyond the system
 
     Raises
     ------
     WriteError : a name is undefined or not unique.
     """
-    context = Exporting(system, units or {})
+    details = details or AmaltheaDetails()
+    context = Exporting(system, details.units)
     systems = [each.name for each in system.hardware.walk() if each.kind is StructureKind.SYSTEM]
     context.model["name"] = systems[-1] if systems else _NAME
-    build_hardware(context)
+    build_hardware(context, details.handlers)
     build_stimuli(context)
     build_software(context)
     build_systems(context)
     build_graphs(context)
     assign_owners(context)
+    add_details(context.model, details)
     build_chains(context)
     build_requirements(context)
     _keep_middleware(context)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note_whole
+from amalthea_uros.inchron_bridge.basics.comments import note, note_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.conditions import build_condition, whole_number
 from amalthea_uros.inchron_bridge.tables.demand import of_every_core_type
@@ -158,9 +158,12 @@ class _Graph:
     def switch(self, switch: perf.Switch) -> ProjectObject:
         """The first case whose condition holds."""
         made = next_entry("Switch", self.context)
+        made["evaluateConditionsOnEntry"] = True
         for number, case in enumerate(switch.cases):
             condition = build_condition(case.condition, self.context, case)
-            entry = ProjectObject("SwitchEntry", name=case.name or f"SwitchEntry_{number}", condition=condition)
+            entry = ProjectObject("SwitchEntry", name=f"SwitchEntry_{number}", condition=condition)
+            if case.name:
+                note(entry, name=case.name)
             made.add("entries", entry)
             entry["graphEntries"] = self.entries(case.activities)
         if switch.default is not None:
@@ -281,7 +284,7 @@ class _Graph:
     def _whole(self, activity: perf.Activity) -> ProjectObject:
         """An item that only says that there is something; it takes no time there."""
         kind = type(activity).__name__
-        item = ProjectObject("ResourceConsumption", name=self.named(kind, activity))
+        item = ProjectObject("ResourceConsumption", name=kind)
         note_whole(item, ACTIVITY, activity)
         self.context.lost(activity, kind)
         return item

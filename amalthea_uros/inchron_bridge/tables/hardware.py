@@ -19,8 +19,13 @@ _BITS, _WIDE_BITS = 64, 256
 _RESPONDER, _TO_SYSTEM = "ResponderPort", "to_SystemInterconnect"
 
 
-def build_hardware(context: Exporting) -> None:
-    """Make the clocks, processors, memories and interconnects."""
+def build_hardware(context: Exporting, buses: frozenset[str]) -> None:
+    """Make the clocks, processors, memories and interconnects.
+
+    Parameters
+    ----------
+    buses : names of the interconnects that a project has; others are latencies only
+    """
     system, model = context.system, context.model
     for clock in system.hardware.clocks:
         if clock.frequency is None:
@@ -32,7 +37,7 @@ def build_hardware(context: Exporting) -> None:
     cpus = []
     for structure in system.hardware.walk():
         if structure.cores:
-            cpus.append(model.add("cpus", _cpu(structure, context)))
+            cpus.append(model.add("cpus", _cpu(structure, context, buses)))
         for memory in structure.memories:
             if not structure.cores:
                 model.add("memories", _memory(memory, ideal, context))
@@ -48,7 +53,7 @@ def _frequency(clock: perf.Clock, context: Exporting) -> ProjectObject:
     return frequency(hertz, context.units.get((clock.name, int(hertz))))
 
 
-def _cpu(structure: perf.Structure, context: Exporting) -> ProjectObject:
+def _cpu(structure: perf.Structure, context: Exporting, buses: frozenset[str]) -> ProjectObject:
     system = context.system
     clocks = [core.clock for core in structure.cores if core.clock in system.clocks]
     fastest = max(clocks, key=lambda name: system.clocks[name].frequency or 0) if clocks else None
@@ -62,7 +67,7 @@ def _cpu(structure: perf.Structure, context: Exporting) -> ProjectObject:
         cpu.add("memories", _memory(memory, clock, context))
     for cache in (*structure.caches, *(cache for core in structure.cores for cache in core.caches)):
         cpu.add("memories", _cache(cache, clock, context))
-    for interconnect in structure.interconnects:
+    for interconnect in (each for each in structure.interconnects if each.name in buses):
         cpu.add("interconnects", _interconnect(interconnect, clock, context))
     return cpu
 
@@ -76,8 +81,6 @@ def _core(core: perf.Core, fastest: Fraction | None, context: Exporting) -> Proj
         prescaler=float(fastest / own) if fastest and own else 1.0,
         initiator=ProjectObject("memory.InitiatorPort", name=f"from_{core.name}"),
     )
-    if core.accesses:
-        context.keep(made, core, "accesses")
     return context.register("CpuCore", core.name, made)
 
 
@@ -89,7 +92,7 @@ def _module(kind: str, module: Any, clock: ProjectObject | None, context: Export
 
 
 def _memory(memory: perf.Memory, clock: ProjectObject | None, context: Exporting) -> ProjectObject:
-    made = _module(
+    return _module(
         "memory.Memory",
         memory,
         clock,
@@ -98,12 +101,10 @@ def _memory(memory: perf.Memory, clock: ProjectObject | None, context: Exporting
         size=context.size(memory.size, memory.name),
         responder=ProjectObject("memory.ResponderPort", name=_RESPONDER),
     )
-    context.keep(made, memory, "latency", "rate", "kind")
-    return made
 
 
 def _cache(cache: perf.Cache, clock: ProjectObject | None, context: Exporting) -> ProjectObject:
-    made = _module(
+    return _module(
         "memory.CacheMemory",
         cache,
         clock,
@@ -112,8 +113,6 @@ def _cache(cache: perf.Cache, clock: ProjectObject | None, context: Exporting) -
         initiator=ProjectObject("memory.InitiatorPort", name="InitiatorPort"),
         responder=ProjectObject("memory.ResponderPort", name=_RESPONDER),
     )
-    context.keep(made, cache, "latency", "hit_rate")
-    return made
 
 
 _SCHEDULING = {
@@ -125,9 +124,7 @@ _SCHEDULING = {
 
 def _interconnect(item: perf.Interconnect, clock: ProjectObject | None, context: Exporting) -> ProjectObject:
     policy = _SCHEDULING[item.arbitration] if item.arbitration else None
-    made = _module("memory.Interconnect", item, clock, context, schedulingPolicy=policy)
-    context.keep(made, item, "latency")
-    return made
+    return _module("memory.Interconnect", item, clock, context, schedulingPolicy=policy)
 
 
 def _connect(cpus: list[ProjectObject], context: Exporting) -> None:
@@ -138,7 +135,7 @@ def _connect(cpus: list[ProjectObject], context: Exporting) -> None:
     several = len(cpus) + len(memories) > 1
     upwards = []
     for cpu in cpus:
-        local = [memory for memory in cpu["memories"]]
+        local = cpu["memories"]
         if len(cpu["cores"]) + len(local) > 1 or several:
             upwards.append((cpu, _local_interconnect(cpu, several)))
     if several:
@@ -173,6 +170,8 @@ def _local_interconnect(cpu: ProjectObject, several: bool) -> ProjectObject | No
             memory["initiator"]["name"], memory["responder"]["name"] = _TO_SYSTEM, "to_CpuInterconnect"
         port = made.add("initiators", ProjectObject("memory.InitiatorPort", name=f"to_{memory.name}"))
         _join(port, memory["responder"])
+    if not made["initiators"]:
+        made.add("initiators", ProjectObject("memory.InitiatorPort", name="InitiatorPort"))
     return upwards
 
 

@@ -7,18 +7,22 @@ from amalthea_uros.inchron_bridge.basics.comments import note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
+from amalthea_uros.timing.scheduling.allocation import standard_policy
 
 #: The operating system for what belongs to none, and the root of every scheduler tree (am2inc, osModel.cpp and relax.cpp).
 GLOBAL, ROOT, DEFAULT = "__GLOBAL__", "IsrScheduler", "DefaultScheduler"
 
 #: Policies of which a project has a strategy; the others have none, and become one that nothing else means.
-STRATEGIES = {
+STRATEGIES: dict[str, str] = {
     perf.Policy.FIXED_PRIORITY_PREEMPTIVE: "FixedPriority",
     perf.Policy.OSEK: "FixedPriority",
     perf.Policy.EARLIEST_DEADLINE_FIRST: "EDF",
     perf.Policy.PRIORITY_BASED_ROUND_ROBIN: "RoundRobin",
 }
 UNKNOWN_STRATEGY = "UserDefined"
+#: What a strategy is read as.
+POLICIES = {strategy: policy for policy, strategy in STRATEGIES.items() if policy is not perf.Policy.OSEK}
+_WRITTEN = frozenset(POLICIES.values())
 
 _CORES = "cpuCores"
 
@@ -51,10 +55,8 @@ class _System:
         made["rtosConfig"] = ProjectObject("RtosConfig", name="RtosConfig", schedulables=[self.root])
         context.keep(made, system, "overhead", "protection")
         context.model.add("systems", context.register("System", system.name, made))
-        cores: list[ProjectObject] = []
         for controller in system.interrupt_controllers:
             context.register("InterruptController", controller.name, self.root)
-            cores += self.cores(controller)
             if controller.overhead:
                 context.lost(controller, "InterruptController.overhead", "it costs nothing there")
         for scheduler in system.schedulers:
@@ -62,18 +64,25 @@ class _System:
         for scheduler in system.schedulers:
             above = context.find("Scheduler", scheduler.parent.scheduler) if scheduler.parent else None
             (above or self.root).add("schedulables", context.need("Scheduler", scheduler.name, system.name))
-        below = [core for each in system.schedulers for core in context.need("Scheduler", each.name, "")[_CORES]]
-        self.root[_CORES] = list(dict.fromkeys(cores or below))
+        self.root[_CORES] = self.root_cores()
+
+    def root_cores(self) -> list[ProjectObject]:
+        """The cores of those that have interrupt service routines, and of the schedulers."""
+        used = {allocation.controller for allocation in self.context.system.mapping.isrs}
+        controllers = [each for each in self.system.interrupt_controllers if each.name in used]
+        return list(dict.fromkeys(core for each in (*controllers, *self.system.schedulers) for core in self.cores(each)))
 
     def scheduler(self, scheduler: perf.Scheduler) -> ProjectObject:
         """A scheduler with its policy."""
         context = self.context
-        strategy = STRATEGIES.get(_standard(scheduler.policy), UNKNOWN_STRATEGY)
+        strategy = STRATEGIES.get(standard_policy(scheduler.policy) or "", UNKNOWN_STRATEGY if scheduler.policy else "FixedPriority")
         made = ProjectObject("Scheduler", name=scheduler.name, strategy=strategy, cpuCores=self.cores(scheduler))
+        if scheduler.policy is None:
+            context.changed(scheduler, "a scheduler without a policy", "as one by fixed priorities, as the importer of INCHRON takes it")
         if strategy == UNKNOWN_STRATEGY:
             context.keep(made, scheduler, "policy")
-        elif scheduler.policy == perf.Policy.OSEK:
-            note(made, policy=scheduler.policy)  # its other properties are those of the processes
+        elif scheduler.policy not in _WRITTEN:
+            note(made, policy=scheduler.policy)  # another name, or OSEK, whose other properties are those of the processes
         context.keep(made, scheduler, "parameters", "parent", "overhead")
         own = next((each.values[0] for each in scheduler.parameters if each.name == "priority"), None)
         if isinstance(own, int):
@@ -83,10 +92,6 @@ class _System:
     def cores(self, scheduler: perf.Scheduler | perf.InterruptController) -> list[ProjectObject]:
         """The cores of a scheduler."""
         return [self.context.need("CpuCore", core, scheduler.name) for core in scheduler.cores]
-
-
-def _standard(policy: str | None) -> perf.Policy | None:
-    return next((each for each in perf.Policy if each == policy), None)
 
 
 def global_system(context: Exporting) -> ProjectObject:
@@ -107,6 +112,8 @@ def _place_isr(process: ProjectObject, allocation: IsrAllocation | None, context
         global_system(context)
         controller = context.need("InterruptController", GLOBAL, GLOBAL)
     if allocation is not None:
+        found = context.system.interrupt_controllers.get(allocation.controller)
+        process[_CORES] = [context.need("CpuCore", core, process.name) for core in (found.cores if found else ())]
         process["priority"] = allocation.priority or 0
         _note_priority(process, allocation.priority)
     controller.add("schedulables", process)

@@ -70,7 +70,7 @@ def _stimulus(stimulus: perf.Stimulus, context: Exporting, scenario: ProjectObje
         case perf.Burst():
             pattern = ProjectObject(
                 "stimulation.BurstPattern",
-                maximumOccurrences=stimulus.count,
+                maximumOccurrences=_most(stimulus),
                 minimumInterArrivalTime=context.time(stimulus.distance, name),
                 patternLength=context.time(stimulus.length, name),
             )
@@ -80,6 +80,11 @@ def _stimulus(stimulus: perf.Stimulus, context: Exporting, scenario: ProjectObje
             made = _other(stimulus, context)
     scenario.add("generators", made)
     return made
+
+
+def _most(burst: perf.Burst) -> int:
+    """How often a burst occurs at most; a number of 0 stands for as often as fits."""
+    return burst.count or (burst.length // burst.distance + 1 if burst.distance > 0 else 0)
 
 
 def _generator(kind: str, name: str, context: Exporting, **features: Any) -> ProjectObject:
@@ -152,10 +157,9 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
         case _:
             period = lowest(distance) or 0
             width = (highest(distance) or 0) - period
-            spread = {"min": 0, "max": width} if (name, width) in context.units else {"max": width}
-            variation = _variation("Uniform", context, name, **spread)
+            variation = _variation("Uniform", context, name, max=width)
             is_exact = isinstance(distance, distributions.Uniform)
-    made = _random(name, period, context, name, offset=stimulus.offset or None, variation=variation, relative=True)
+    made = _random(name, period, context, name, offset=stimulus.offset, variation=variation, relative=True)
     context.keep(made, stimulus, "has_maximum")
     if not is_exact:
         context.changed(stimulus, "a distance of another distribution", "uniformly distributed within its bounds, or around its mean")
