@@ -6,11 +6,16 @@ from dataclasses import dataclass, replace
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron.write import link_opposites
 from amalthea_uros.inchron_bridge.amalthea import AmaltheaDetails, add_details
-from amalthea_uros.inchron_bridge.basics.comments import note, note_whole
+from amalthea_uros.inchron_bridge.basics.comments import note_list, note_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
+from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.orders import note_orders
+from amalthea_uros.inchron_bridge.basics.seals import seal_all
 from amalthea_uros.inchron_bridge.tables.chains import build_chains
 from amalthea_uros.inchron_bridge.tables.hardware import build_hardware
+from amalthea_uros.inchron_bridge.tables.hardware_back import HARDWARE, extract_hardware
 from amalthea_uros.inchron_bridge.tables.os import build_systems
 from amalthea_uros.inchron_bridge.tables.requirements import build_requirements
 from amalthea_uros.inchron_bridge.tables.software import assign_owners, build_graphs, build_software
@@ -61,7 +66,29 @@ def build_project(system: System, details: AmaltheaDetails | None = None) -> Pro
     build_chains(context)
     build_requirements(context)
     _keep_middleware(context)
+    _keep_lists(context)
+    link_opposites(context.model)
+    seal_all(context.model)
     return ProjectBuild(model=context.model, findings=context.finish())
+
+
+def _keep_lists(context: Exporting) -> None:
+    """What a project has no objects for, and the hardware where it says more than a project."""
+    system, model = context.system, context.model
+    for channel in system.software.channels:
+        context.lost(channel, "Channel")
+    for overhead in system.os.overheads:
+        context.lost(overhead, "Overhead")
+    note_list(model, "channels", system.software.channels)
+    note_list(model, "overheads", system.os.overheads)
+    note_list(model, "clocks", system.stimuli.clocks)
+    note_list(model, "events", system.events.events)
+    note_list(model, "chains", [chain for chain in system.events.chains if context.find("EventGraph", chain.name) is None])
+    placed = [each for each in system.mapping.placements if each.element not in system.labels or each.address]
+    note_list(model, "placements", placed)
+    note_orders(model, system)
+    if extract_hardware(Importing(model), model) != system.hardware:
+        note_whole(model, HARDWARE, system.hardware)
 
 
 def _keep_middleware(context: Exporting) -> None:
@@ -74,5 +101,3 @@ def _keep_middleware(context: Exporting) -> None:
     network = replace(system.network, transmissions=())
     if network != Network():
         note_whole(context.model, "network", network)
-    if system.executors or system.network != Network():
-        note(context.model, version=1)

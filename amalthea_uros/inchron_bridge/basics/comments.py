@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from typing import Any, TypeVar, get_type_hints
 
 from amalthea_uros.bridge.basics.json_text import TAG, default_value, from_text, plain_value, typed_value
@@ -14,8 +14,6 @@ from amalthea_uros.inchron.objects import ProjectObject
 T = TypeVar("T")
 
 _BEGIN = "amuros "
-#: The key for an object that the project has no class for.
-WHOLE = "object"
 
 
 def note_fields(item: ProjectObject, source: Any, names: Iterable[str]) -> tuple[str, ...]:
@@ -29,6 +27,12 @@ def note_fields(item: ProjectObject, source: Any, names: Iterable[str]) -> tuple
 def note_whole(item: ProjectObject, key: str, source: Any) -> None:
     """Keep an object in the comment."""
     note(item, **{key: plain_value(source, tagged=True)})
+
+
+def note_list(item: ProjectObject, key: str, sources: Iterable[Any]) -> None:
+    """Keep objects in the comment."""
+    if found := [plain_value(source, tagged=True) for source in sources]:
+        note(item, **{key: found})
 
 
 def note(item: ProjectObject, **content: Any) -> None:
@@ -89,9 +93,3 @@ def whole(content: Any, kinds: Iterable[type[T]], **known: Any) -> T:
     if kind is None:
         raise UnknownError("its comment has no object of a known class")
     return from_text(kind, json.dumps(content), **known)
-
-
-def is_default(source: Any, name: str) -> bool:
-    """Whether a field has its default; fields without one never have."""
-    field = next(field for field in fields(source) if field.name == name)
-    return default_value(field) is not MISSING and getattr(source, name) == default_value(field)

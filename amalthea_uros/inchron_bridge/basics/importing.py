@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
+from typing import Any, TypeVar
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron.project import Project
+from amalthea_uros.inchron_bridge.basics.comments import noted, noted_fields, noted_whole, whole
+from amalthea_uros.inchron_bridge.basics.seals import require_sealed
+from amalthea_uros.units import Frequency
+
+T = TypeVar("T")
 
 
 class Importing:
@@ -15,11 +23,15 @@ class Importing:
     Attributes
     ----------
     findings : what could not be understood
-    frequencies : of the cores, by their objects; None if unknown
+    derived_clocks : clocks of cores that a prescaler makes slower than any clock of the project
+    frequency : of all cores, None if it is unknown or they differ
     """
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, model: ProjectObject, project: Project | None = None) -> None:
+        self.model = model
         self.project = project
+        self.derived_clocks: dict[str, Frequency | None] = {}
+        self.frequency: Frequency | None = None
         self.findings: list[Finding] = []
         self._names: dict[str, dict[ProjectObject, str]] = {}
         self._taken: set[tuple[str, str]] = set()
@@ -37,17 +49,64 @@ class Importing:
         self._names.setdefault(kind, {})[item] = found
         return found
 
-    def name_of(self, kind: str, item: ProjectObject) -> str | None:
+    def share(self, kind: str, item: ProjectObject, name: str) -> None:
+        """Let an object have the same name within another kind."""
+        self._names.setdefault(kind, {})[item] = name
+
+    def name_of(self, kind: str, item: ProjectObject | None) -> str | None:
         """The name that an object has been given; None if it has no counterpart."""
-        return self._names.get(kind, {}).get(item)
+        return None if item is None else self._names.get(kind, {}).get(item)
 
     def location(self, item: ProjectObject) -> Location | None:
         """Where an object is in the file."""
-        return self.project.location(item)
+        return self.project.location(item) if self.project is not None else None
 
     def located(self, item: ProjectObject) -> partial[Location | None]:
         """Finds where an object is in the file."""
-        return partial(self.project.location, item)
+        return partial(self.location, item)
+
+    def noted(self, item: ProjectObject) -> dict[str, Any]:
+        """What the comment of an object keeps; nothing, with a finding, if it is damaged."""
+        try:
+            return noted(item)
+        except UnknownError as error:
+            self.comment_unused(item, error)
+            return {}
+
+    def fields(self, item: ProjectObject, kind: type[Any], names: Iterable[str]) -> dict[str, Any]:
+        """The values of fields that the comment keeps; none, with a finding, if it is damaged."""
+        try:
+            return noted_fields(item, kind, names)
+        except UnknownError as error:
+            self.comment_unused(item, error)
+            return {}
+
+    def whole(self, item: ProjectObject, key: str, kinds: Iterable[type[T]], *, sealed: bool = True, **known: Any) -> T | None:
+        """The object that the comment keeps under a key; None, with a finding, if it is damaged, or the project was changed."""
+        try:
+            found = noted_whole(item, key, kinds, **known)
+            if found is not None and sealed:
+                require_sealed(item)
+        except UnknownError as error:
+            self.comment_unused(item, error)
+            return None
+        return found
+
+    def list_of(self, item: ProjectObject, key: str, kinds: Iterable[type[T]]) -> tuple[T, ...]:
+        """The objects that the comment keeps under a key; those that are damaged are left out, with a finding."""
+        content = self.noted(item).get(key)
+        found = []
+        for each in content if isinstance(content, list) else ():
+            try:
+                found.append(whole(each, kinds))
+            except UnknownError as error:
+                self.comment_unused(item, error)
+        return tuple(found)
+
+    def comment_unused(self, item: ProjectObject, error: UnknownError) -> None:
+        """Report that a comment of ours says nothing."""
+        what = f"{item.kind} {item.name!r}".rstrip()
+        self.note("INC008", f"what the comment of {what} keeps is not used: {error}", item)
 
     def note(self, rule: str, message: str, item: ProjectObject, severity: Severity = Severity.WARNING) -> None:
         """Add a finding about an object."""

@@ -74,8 +74,21 @@ def build_chains(context: Exporting) -> None:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
             continue
         graph["initialNode"], graph["terminalNodes"] = ends.first, [ends.last]
-        note_whole(graph, CHAIN, chain)
+        if not is_plain(chain):
+            note_whole(graph, CHAIN, chain)
         context.model.add("eventChains", context.register("EventGraph", chain.name, graph))
+
+
+def is_plain(chain: perf.EventChain) -> bool:
+    """Whether a graph alone says everything of a chain: a sequence of steps without gaps and names."""
+    if chain.items is None:
+        return True
+    ends = [chain.stimulus]
+    for item in chain.items.items:
+        if not isinstance(item, perf.Segment) or item.items is not None or item.name or item.stimulus != ends[-1]:
+            return False
+        ends.append(item.response)
+    return isinstance(chain.items, perf.Sequence) and len(ends) > 2 and ends[-1] == chain.response
 
 
 class _Chain:

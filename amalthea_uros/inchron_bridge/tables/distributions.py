@@ -86,8 +86,6 @@ def extract(item: ProjectObject, number: Callable[[ProjectObject], int | None]) 
             return perf.Weibull(lower=lower, average=float(mean), upper=upper, exceeding=item["outlierProbability"] * 1000)
         case "Beta":
             return perf.Beta(alpha=item["alpha"], beta=item["beta"], lower=lower, upper=upper)
-        case "Uniform":
-            return perf.Uniform(lower=lower, upper=upper)
         case "Min" | "Max" if lower >= upper:
             return perf.Constant(lower if item["type"] == "Min" else max(lower, upper))
         case "Min" | "Max" as extreme:

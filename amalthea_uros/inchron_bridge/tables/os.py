@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note
+from amalthea_uros.inchron_bridge.basics.comments import note, note_list
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
@@ -58,7 +58,9 @@ class _System:
         for controller in system.interrupt_controllers:
             context.register("InterruptController", controller.name, self.root)
             if controller.overhead:
-                context.lost(controller, "InterruptController.overhead", "it costs nothing there")
+                context.lost(controller, "InterruptController.overhead")
+        if system.interrupt_controllers:
+            note_list(self.root, "controllers", system.interrupt_controllers)
         for scheduler in system.schedulers:
             context.register("Scheduler", scheduler.name, self.scheduler(scheduler))
         for scheduler in system.schedulers:
@@ -84,6 +86,8 @@ class _System:
         elif scheduler.policy not in _WRITTEN:
             note(made, policy=scheduler.policy)  # another name, or OSEK, whose other properties are those of the processes
         context.keep(made, scheduler, "parameters", "parent", "overhead")
+        if scheduler.executing_core is not None:
+            note(made, executing_core=scheduler.executing_core)
         own = next((each.values[0] for each in scheduler.parameters if each.name == "priority"), None)
         if isinstance(own, int):
             made["priority"] = own
@@ -112,6 +116,7 @@ def _place_isr(process: ProjectObject, allocation: IsrAllocation | None, context
         global_system(context)
         controller = context.need("InterruptController", GLOBAL, GLOBAL)
     if allocation is not None:
+        note(process, controller=allocation.controller)
         found = context.system.interrupt_controllers.get(allocation.controller)
         process[_CORES] = [context.need("CpuCore", core, process.name) for core in (found.cores if found else ())]
         process["priority"] = allocation.priority or 0

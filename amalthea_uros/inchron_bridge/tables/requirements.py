@@ -45,8 +45,20 @@ def build_requirements(context: Exporting) -> None:
             reason = f"{error}; " if isinstance(error, UnknownError) else ""
             context.lost(limit, f"a {type(limit).__name__}", f"{reason}only amuros reads it, in a comment")
             made = ProjectObject("requirement.GroupOfRequirements", name=limit.name)
-        note_whole(made, LIMIT, limit)
+            made["evaluate"] = False
+        if not _is_plain(limit, made):
+            note_whole(made, LIMIT, limit)
         context.model.add("requirements", made)
+
+
+def _is_plain(limit: Any, made: ProjectObject) -> bool:
+    """Whether the requirement alone says everything of the limit."""
+    match limit:
+        case perf.LatencyConstraint():
+            return made.kind == CHAIN_REQUIREMENT and limit.jitter is None and limit.minimum != 0
+        case perf.Requirement(severity=None, process=str(), limit=perf.TimeLimit(bound=perf.Bound.UPPER)):
+            return made.kind in OF_PROCESS.values()
+    return False
 
 
 def _interval(lower: int | None, upper: int | None, context: Exporting, holder: str) -> ProjectObject:

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 from amalthea_uros.bridge.basics.json_text import default_value
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import noted_fields
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 
@@ -63,7 +62,7 @@ class Row:
                 if value is MISSING:
                     return None
             values[name] = value
-        values |= noted_fields(item, self.item, self.kept)
+        values |= context.fields(item, self.item, self.kept)
         return self.item(**{**values, **known})
 
 
