@@ -81,6 +81,9 @@ def _keep_lists(context: Exporting) -> None:
         context.lost(overhead, "Overhead")
     note_list(model, "channels", system.software.channels)
     note_list(model, "overheads", system.os.overheads)
+    note_list(model, "modes", system.software.modes)
+    modes = {mode.name for mode in system.software.modes}
+    note_list(model, "mode_labels", [label for label in system.software.mode_labels if label.mode not in modes])
     note_list(model, "clocks", system.stimuli.clocks)
     note_list(model, "events", system.events.events)
     note_list(model, "chains", [chain for chain in system.events.chains if context.find("EventGraph", chain.name) is None])

@@ -25,6 +25,7 @@ _LISTS = (
     ("mapping", "isrs", "isr"),
     ("mapping", "placements", "element"),
     ("events", "chains", "name"),
+    ("network", "transmissions", "name"),
 )
 _KEY = "order"
 

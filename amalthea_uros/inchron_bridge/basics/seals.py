@@ -17,7 +17,7 @@ from amalthea_uros.metamodel.factfile import FeatureKind
 
 #: The key of the seal in a comment, and the keys of what it seals.
 _SEAL = "seal"
-SEALED = ("activity", "stimulus", "chain", "limit", "hardware", "counter")
+SEALED = ("activity", "stimulus", "chain", "limit", "hardware", "counter", "group")
 
 #: Features that say nothing about the object itself: what it activates, its name in the file, and what it is said to be.
 _OTHERS = {"intrinsicId", "comment", "targets", "callGraph", "users", "activators"}
@@ -48,9 +48,18 @@ def require_sealed(item: ProjectObject) -> None:
 
 def _sealed(item: ProjectObject) -> Iterable[ProjectObject]:
     """What a seal is about: the object, and of a model its hardware."""
+    span = noted(item).get("span")
+    if type(span) is int and item.owner is not None:
+        entries = next((parts for parts in _lists(item.owner) if item in parts), [item])
+        place = entries.index(item)
+        return entries[place : place + span]
     if item.kind != "Model":
         return (item,)
     return (*item["clocks"], *item["cpus"], *item["memories"], *item["interconnects"])
+
+
+def _lists(item: ProjectObject) -> Iterable[list[ProjectObject]]:
+    return (parts for parts in item.values.values() if isinstance(parts, list))
 
 
 def _digest(items: Iterable[ProjectObject]) -> str:

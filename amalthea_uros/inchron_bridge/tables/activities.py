@@ -17,6 +17,8 @@ from amalthea_uros.perf import activities as perf
 
 #: What an activity is called that comes as a whole from a comment.
 ACTIVITY = "activity"
+#: And a group, in the comment of the first of the entries that stand for it.
+GROUP = "group"
 
 _ACCESSES = {perf.AccessKind.READ: "Read", perf.AccessKind.WRITE: "Write"}
 _DATA_ACCESS = "memory.ExplicitDataAccess"
@@ -62,7 +64,7 @@ SERVER_CALLS: dict[perf.ServerCallKind, tuple[str, Row]] = {
         Row(
             perf.ServerCall,
             "SynchronousServerCall",
-            ("waits",),
+            ("waits", "waiting"),
             runnable=_SERVER,
             waiting=choice("waitingBehavior", {perf.Waiting.ACTIVE: "Active", perf.Waiting.PASSIVE: "Passive"}),
         ),
@@ -82,6 +84,7 @@ SERVER_CALLS: dict[perf.ServerCallKind, tuple[str, Row]] = {
         Row(
             perf.ServerCall,
             "GetResultServerCall",
+            ("waiting",),
             runnable=_SERVER,
             waiting=choice("blockingType", {perf.Waiting.ACTIVE: "ActiveWait", perf.Waiting.PASSIVE: "PassiveWait"}),
         ),
@@ -142,8 +145,8 @@ class _Graph:
         context = self.context
         if not group.ordered:
             context.lost(group, "a group without an order", "its activities are in the order in which they are stated")
-        simple = not any(isinstance(each, perf.WITH_PARTS) for each in group.activities)
-        if simple:
+        is_simple = not any(isinstance(each, perf.WITH_PARTS) for each in group.activities)
+        if is_simple:
             found = [ProjectObject("CallSequence", name=group.name)]
             for activity in group.activities:
                 for item in self.items(activity):
@@ -153,6 +156,9 @@ class _Graph:
             context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
         if not group.interruptible:
             _enclose(found, group.name, context)
+        if not (is_simple and group.ordered and group.name):
+            note_whole(found[0], GROUP, group)
+            note(found[0], span=len(found))
         return found
 
     def switch(self, switch: perf.Switch) -> ProjectObject:
@@ -227,7 +233,10 @@ class _Graph:
             case perf.ServerCall(kind=call):
                 pattern, row = SERVER_CALLS[call]
                 more = {"blockingType": "NonBlocking"} if call is perf.ServerCallKind.GET_RESULT and not activity.waits else {}
-                yield row.build(activity, context, name=self.named(pattern, activity), **more)
+                item = row.build(activity, context, name=self.named(pattern, activity), **more)
+                if activity.waiting is None:
+                    note(item, waiting=None)  # a project always says how a client waits
+                yield item
             case perf.SenderReceiverAccess():
                 yield self._communication(activity)
             case perf.SetEvent(events=events) | perf.ClearEvent(events=events) | perf.WaitEvent(events=events):

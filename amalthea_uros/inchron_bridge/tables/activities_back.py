@@ -15,7 +15,7 @@ from amalthea_uros.inchron_bridge.basics.comments import noted, whole
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.seals import require_sealed
 from amalthea_uros.inchron_bridge.basics.values import time_of
-from amalthea_uros.inchron_bridge.tables.activities import ACTIVITY, ROWS, SERVER_CALLS
+from amalthea_uros.inchron_bridge.tables.activities import ACTIVITY, GROUP, ROWS, SERVER_CALLS
 from amalthea_uros.inchron_bridge.tables.conditions import extract_condition
 from amalthea_uros.inchron_bridge.tables.distributions import extract
 from amalthea_uros.perf import activities as perf
@@ -38,7 +38,18 @@ def extract_graph(graph: ProjectObject | None, context: Importing) -> tuple[perf
 
 
 def _entries(entries: list[ProjectObject], context: Importing) -> tuple[perf.Activity, ...]:
-    return tuple(activity for entry in entries for activity in _entry(entry, context))
+    found: list[perf.Activity] = []
+    place = 0
+    while place < len(entries):
+        entry = entries[place]
+        group = context.whole(entry, GROUP, (perf.Group,))
+        if group is None:
+            found += _entry(entry, context)
+            place += 1
+        else:
+            found.append(replace(group, locate=context.located(entry)))
+            place += context.noted(entry)["span"]
+    return tuple(found)
 
 
 def _entry(entry: ProjectObject, context: Importing) -> Iterator[perf.Activity]:
@@ -73,12 +84,12 @@ def _case(entry: ProjectObject, context: Importing) -> perf.Case:
 
 def _sequence(entry: ProjectObject, context: Importing) -> Iterator[perf.Activity]:
     calls = list(entry["calls"])
+    name = "" if _GENERATED.fullmatch(entry.name) else entry.name
     is_suspending = len(calls) > 1 and (calls[0].kind, calls[-1].kind) == ("SuspendAllInterrupts", "ResumeAllInterrupts")
     if is_suspending:
         calls = calls[1:-1]
     activities = tuple(activity for call in calls for activity in _items(call, context))
-    if is_suspending or (entry.name and not _GENERATED.fullmatch(entry.name)):
-        name = "" if _GENERATED.fullmatch(entry.name) else entry.name
+    if is_suspending or name:
         yield perf.Group(activities=activities, name=name, interruptible=not is_suspending, locate=context.located(entry))
     else:
         yield from activities

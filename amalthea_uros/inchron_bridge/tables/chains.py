@@ -69,12 +69,13 @@ def build_chains(context: Exporting) -> None:
     for chain in context.system.events.chains:
         graph = ProjectObject("EventGraph", name=chain.name)
         try:
-            ends = _Chain(graph, context).build(chain, 0)
+            builder = _Chain(graph, context)
+            ends = builder.build(chain, 0)
         except UnknownError as error:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
             continue
         graph["initialNode"], graph["terminalNodes"] = ends.first, [ends.last]
-        if not is_plain(chain):
+        if not builder.is_exact or not is_plain(chain):
             note_whole(graph, CHAIN, chain)
         context.model.add("eventChains", context.register("EventGraph", chain.name, graph))
 
@@ -92,12 +93,18 @@ def is_plain(chain: perf.EventChain) -> bool:
 
 
 class _Chain:
-    """One graph."""
+    """One graph.
+
+    Attributes
+    ----------
+    is_exact : whether the trace events say everything of the events
+    """
 
     def __init__(self, graph: ProjectObject, context: Exporting) -> None:
         self.graph = graph
         self.context = context
         self.names: set[str] = set()
+        self.is_exact = True
 
     def build(self, chain: perf.EventChain, depth: int) -> _Ends:
         """The whole, between its stimulus and its response."""
@@ -176,6 +183,9 @@ class _Chain:
         if event is None:
             raise UnknownError("one of its events is not stated")
         found, process = trace_event(event, self.context)
+        if isinstance(event, perf.StimulusEvent) or (isinstance(event, perf.LabelEvent) and event.runnable is not None):
+            self.is_exact = False
+            self.context.lost(event, "what an event is restricted to, or a stimulus as an event,")
         node = ProjectObject(TRACE_EVENT, name=self.free(event.name))
         node["first"] = ProjectObject("ConditionalTraceEvent", traceEvent=found, process=process)
         return self.graph.add("nodes", node)

@@ -21,7 +21,7 @@ STRATEGIES: dict[str, str] = {
 }
 UNKNOWN_STRATEGY = "UserDefined"
 #: What a strategy is read as.
-POLICIES = {strategy: policy for policy, strategy in STRATEGIES.items() if policy is not perf.Policy.OSEK}
+POLICIES = {"FixedPriority": perf.Policy.FIXED_PRIORITY_PREEMPTIVE, "EDF": perf.Policy.EARLIEST_DEADLINE_FIRST}
 _WRITTEN = frozenset(POLICIES.values())
 
 _CORES = "cpuCores"
@@ -59,6 +59,8 @@ class _System:
             context.register("InterruptController", controller.name, self.root)
             if controller.overhead:
                 context.lost(controller, "InterruptController.overhead")
+        if len(system.schedulers) > 1:
+            note(made, schedulers=[each.name for each in system.schedulers])
         if system.interrupt_controllers:
             note_list(self.root, "controllers", system.interrupt_controllers)
         for scheduler in system.schedulers:

@@ -56,6 +56,9 @@ class _System:
         if self.system.name == GLOBAL and not self.controllers:
             return
         kept = self.context.fields(self.system, perf.OperatingSystem, ("overhead", "protection"))
+        order = self.context.noted(self.system).get("schedulers")
+        places = {name: place for place, name in enumerate(order) if isinstance(name, str)} if isinstance(order, list) else {}
+        self.schedulers.sort(key=lambda each: places.get(each.name, len(places)))
         made = perf.OperatingSystem(
             name=self.context.name("System", self.system),
             schedulers=tuple(self.schedulers),
@@ -73,7 +76,7 @@ class _System:
             self.scheduler(root, None)
             return
         kept = [each for each in context.list_of(root, "controllers", (perf.InterruptController,)) if self.has_cores(each)]
-        if not kept and processes:
+        if not kept and processes and self.system.name != GLOBAL:
             kept = [perf.InterruptController(name=root.name, cores=self.cores(root))]
         renamed = {each.name: context.name("InterruptController", root, each.name) for each in kept}
         origin = context.location(root)
@@ -93,7 +96,7 @@ class _System:
         for process in processes:
             isr = self.context.name_of("Process", process)
             stated = self.context.noted(process).get("controller")
-            if isr is None or (self.system.name == GLOBAL and stated is None):
+            if isr is None or stated is None and self.system.name == GLOBAL:
                 continue
             controller = controllers.get(stated if isinstance(stated, str) else "", next(iter(controllers.values())))
             self.found.isrs.append(IsrAllocation(isr=isr, controller=controller, priority=self.priority(process, root)))

@@ -43,7 +43,7 @@ class Row:
             if value is not None and value != ():
                 values[column.feature] = column.build(value, context)
         made = ProjectObject(self.kind, **{**values, **more})
-        context.keep(made, source, *self.kept)
+        context.keep(made, source, *(name for name in self.kept if name not in self.columns))
         return made
 
     def extract(self, item: ProjectObject, context: Importing, **known: Any) -> Any:

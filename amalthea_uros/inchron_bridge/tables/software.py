@@ -74,7 +74,7 @@ def _build_modes(context: Exporting) -> None:
     for label in context.system.software.mode_labels:
         mode = modes.get(label.mode or "")
         if mode is None:
-            context.lost(label, "a mode label without a mode", "it is left out")
+            context.lost(label, "a mode label without a mode")
         elif mode.literals:
             made = ProjectObject("ModeGroup", name=label.name, modes=[ProjectObject("Mode", name=each) for each in mode.literals])
             first = next((each for each in made["modes"] if each.name == label.initial), None)
@@ -102,6 +102,8 @@ def build_graphs(context: Exporting) -> None:
     software = context.system.software
     for process in (*software.isrs, *software.tasks):
         add_activations(process, context)
+        if len(process.stimuli) > 1:
+            note(context.need("Process", process.name, process.name), stimuli=list(process.stimuli))
         _set_graph("Process", process, context)
     for runnable in software.runnables:
         _set_graph("Function", runnable, context)

@@ -47,7 +47,7 @@ def extract_software(context: Importing, model: ProjectObject, stimuli: dict[Pro
         activities = extract_graph(process["callGraph"], context)
         known: dict[str, Any] = {
             "name": context.name_of("Process", process),
-            "stimuli": tuple(dict.fromkeys(stimuli.get(process, ()))),
+            "stimuli": _in_order(stimuli.get(process, []), context.noted(process).get("stimuli")),
             "activities": activities,
             "origin": context.located(process),
         }
@@ -58,13 +58,13 @@ def extract_software(context: Importing, model: ProjectObject, stimuli: dict[Pro
             kept = context.fields(process, perf.Task, ("preemption",)) if not process["preemptable"] else {}
             tasks.append(TASK.extract(process, context, **{**known, "preemption": preemption, **kept}))
         _report(process, context)
-    modes, labels = _modes(context, [item for item in objects if item.kind in ("ModeGroup", "Counter")])
+    modes, labels = _modes(context, model, [item for item in objects if item.kind in ("ModeGroup", "Counter")])
     return perf.Software(
         tasks=tuple(tasks),
         isrs=tuple(isrs),
         runnables=tuple(_runnable(item, context) for item in objects if item.kind == "Function"),
         labels=tuple(_label(item, context) for item in objects if item.kind == "memory.DataObject"),
-        channels=context.list_of(model, "channels", perf.Channel),
+        channels=context.list_of(model, "channels", (perf.Channel,)),
         os_events=tuple(
             perf.OsEvent(name=context.name_of("Event", item) or "", origin=context.located(item))  # type: ignore[arg-type]
             for item in objects
@@ -73,6 +73,12 @@ def extract_software(context: Importing, model: ProjectObject, stimuli: dict[Pro
         modes=tuple(modes),
         mode_labels=tuple(labels),
     )
+
+
+def _in_order(names: list[str], order: Any) -> tuple[str, ...]:
+    """The names of stimuli, in the order that a comment keeps."""
+    places = {name: place for place, name in enumerate(order) if isinstance(name, str)} if isinstance(order, list) else {}
+    return tuple(sorted(dict.fromkeys(names), key=lambda name: places.get(name, len(places))))
 
 
 def _report(process: ProjectObject, context: Importing) -> None:
@@ -120,10 +126,10 @@ def extract_placements(context: Importing, model: ProjectObject) -> tuple[Placem
     return tuple(found)
 
 
-def _modes(context: Importing, items: list[ProjectObject]) -> tuple[list[perf.Mode], list[perf.ModeLabel]]:
+def _modes(context: Importing, model: ProjectObject, items: list[ProjectObject]) -> tuple[list[perf.Mode], list[perf.ModeLabel]]:
     """Modes and mode labels; a project has the literals in each label."""
-    modes: dict[str, perf.Mode] = {}
-    labels = []
+    modes = {mode.name: mode for mode in context.list_of(model, "modes", (perf.Mode,))}
+    labels = [*context.list_of(model, "mode_labels", (perf.ModeLabel,))]
     for item in items:
         content = context.noted(item)
         name = context.name_of(item.kind, item) or ""
