@@ -30,6 +30,7 @@ COMMANDS = {
     "completion": "Print what makes a shell complete commands, options and files.",
     "diff": "Compare two models by meaning.",
     "explain": "Explain a rule or another finding.",
+    "export": "Write models as a project of INCHRON's chronSUITE.",
     "fmt": "Rewrite models in canonical form.",
     "generate": "Write or check build options of the firmware: colcon.meta.",
     "import": "Write an app.yaml from C or C++ sources that use rclc.",

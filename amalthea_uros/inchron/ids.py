@@ -11,18 +11,18 @@ from uuid import UUID, uuid5
 from amalthea_uros.inchron.facts import is_a
 from amalthea_uros.inchron.objects import ProjectObject
 
-_ROOT = uuid5(UUID(int=0), "com.inchron.am2inc")
+#: What all ids depend on, unless another namespace is wanted.
+NAMESPACE = uuid5(UUID(int=0), "com.inchron.am2inc")
 
 
-def intrinsic_ids(model: ProjectObject) -> dict[ProjectObject, str]:
+def intrinsic_ids(model: ProjectObject, namespace: UUID = NAMESPACE) -> dict[ProjectObject, str]:
     """The ids of a model and of all referable objects in it; unlike the importer's they are unique, also where names are not."""
-    found = {model: _text(_ROOT)}
-    used = set(found.values())
-    _add(model, found[model], found, used)
+    found = {model: _text(namespace)}
+    _add(model, found[model], found, namespace, set(found.values()))
     return found
 
 
-def _add(item: ProjectObject, above: str, found: dict[ProjectObject, str], used: set[str]) -> None:
+def _add(item: ProjectObject, above: str, found: dict[ProjectObject, str], namespace: UUID, used: set[str]) -> None:
     counts: dict[str, int] = {}
     for feature, part in item.parts():
         own = above
@@ -33,12 +33,12 @@ def _add(item: ProjectObject, above: str, found: dict[ProjectObject, str], used:
                 path += f".{part.name}"
             elif feature.many:
                 path += f".{number}"
-            own = _text(uuid5(_ROOT, path))
+            own = _text(uuid5(namespace, path))
             if own in used:
-                own = _text(uuid5(_ROOT, f"{path}#{number}"))
+                own = _text(uuid5(namespace, f"{path}#{number}"))
             used.add(own)
             found[part] = own
-        _add(part, own, found, used)
+        _add(part, own, found, namespace, used)
 
 
 def _text(uuid: UUID) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from typing import Any
+from uuid import UUID
 
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.inchron.facts import NAMESPACE, features, namespace_of, package_of, prefix_of
+from amalthea_uros.inchron.ids import NAMESPACE as NAMESPACE_OF_IDS
 from amalthea_uros.inchron.ids import intrinsic_ids
 from amalthea_uros.inchron.objects import ProjectObject, default_of, problems
 from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind
@@ -15,8 +17,12 @@ from amalthea_uros.xmi.emf.escape import escape, impossible_character
 _HEADER = '<?xml version="1.0" encoding="UTF-8" standalone="no" ?>\n'
 
 
-def project_text(model: ProjectObject) -> str:
+def project_text(model: ProjectObject, namespace: UUID = NAMESPACE_OF_IDS) -> str:
     """The text of the file of a model.
+
+    Parameters
+    ----------
+    namespace : what the ids of objects depend on, besides names
 
     Raises
     ------
@@ -25,7 +31,7 @@ def project_text(model: ProjectObject) -> str:
     link_opposites(model)
     if found := [_finding(item, reason) for item, reason in problems(model)]:
         raise WriteError(found)
-    return _Writer(model).text()
+    return _Writer(model, namespace).text()
 
 
 def link_opposites(model: ProjectObject) -> None:
@@ -50,9 +56,9 @@ def _finding(item: ProjectObject, reason: str) -> Finding:
 
 
 class _Writer:
-    def __init__(self, model: ProjectObject) -> None:
+    def __init__(self, model: ProjectObject, namespace: UUID) -> None:
         self.model = model
-        self.ids = intrinsic_ids(model)
+        self.ids = intrinsic_ids(model, namespace)
         self.lines: list[str] = []
 
     def text(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron_bridge.basics.comments import note_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.perf import conditions as perf
@@ -15,6 +16,9 @@ _RELATIONS = {
     perf.Relation.GREATER: "gt",
     perf.Relation.GREATER_OR_EQUAL: "ge",
 }
+#: The key of a condition in the comment of what stands for it.
+CONDITION = "condition"
+
 _RELATION_OF = {literal: relation for relation, literal in _RELATIONS.items()}
 
 
@@ -29,6 +33,7 @@ def build_condition(condition: perf.Condition | None, context: Exporting, source
         if len(known) < len(every) or not every:
             context.lost(source, "a condition", "it is written without content, so that it is unknown when it is true")
             made["conjunctions"] = []
+            note_whole(made, CONDITION, condition)
             return made
         made.add("conjunctions", ProjectObject("Conjunction", expressions=known))
     return made
@@ -68,7 +73,7 @@ def whole_number(text: str | None) -> int | None:
 def extract_condition(item: ProjectObject | None, context: Importing) -> perf.Condition | None:
     """The condition; None if it is unknown when it is true."""
     if item is None or not item["conjunctions"]:
-        return None
+        return None if item is None else context.whole(item, CONDITION, (perf.Condition,))
     return perf.Condition(
         tuple(tuple(_comparison(each, context) for each in every["expressions"]) for every in item["conjunctions"])
     )
