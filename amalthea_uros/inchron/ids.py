@@ -17,7 +17,8 @@ NAMESPACE = uuid5(UUID(int=0), "com.inchron.am2inc")
 
 def intrinsic_ids(model: ProjectObject, namespace: UUID = NAMESPACE) -> dict[ProjectObject, str]:
     """The ids of a model and of all referable objects in it; unlike the importer's they are unique, also where names are not."""
-    found = {model: _text(namespace)}
+    # The model is the part `model` of the root, whose id is that of the namespace; the root itself has no attribute for it.
+    found = {model: _text(uuid5(namespace, f"{_text(namespace)}/@model.{model.name}"))}
     _add(model, found[model], found, namespace, set(found.values()))
     return found
 

@@ -40,7 +40,8 @@ def link_opposites(model: ProjectObject) -> None:
         for name, feature in features(item.kind).items():
             if feature.opposite and feature.kind is FeatureKind.REFERENCE and name in item.values:
                 for target in item.values[name] if feature.many else (item.values[name],):
-                    _link(target, feature.opposite, item)
+                    if feature.opposite in features(target.kind):
+                        _link(target, feature.opposite, item)
 
 
 def _link(item: ProjectObject, name: str, target: ProjectObject) -> None:

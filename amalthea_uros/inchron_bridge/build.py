@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
@@ -23,6 +25,7 @@ from amalthea_uros.inchron_bridge.tables.stimuli import build_stimuli
 from amalthea_uros.perf.hardware import StructureKind
 from amalthea_uros.perf.network import Network
 from amalthea_uros.perf.system import System
+from amalthea_uros.units import Time
 
 _NAME = "New Project"
 
@@ -41,19 +44,24 @@ class ProjectBuild:
     findings: tuple[Finding, ...]
 
 
-def build_project(system: System, details: AmaltheaDetails | None = None) -> ProjectBuild:
+def build_project(
+    system: System,
+    details: AmaltheaDetails | None = None,
+    iterations: Mapping[str, tuple[Time, Time]] = MappingProxyType({}),
+) -> ProjectBuild:
     """The project of a system.
 
     Parameters
     ----------
     details : what an AMALTHEA model says beyond the system
+    iterations : the shortest and the longest time between two iterations of executors, by the stimuli that stand for them
 
     Raises
     ------
     WriteError : a name is undefined or not unique.
     """
     details = details or AmaltheaDetails()
-    context = Exporting(system, details.units)
+    context = Exporting(system, details.units, iterations)
     systems = [each.name for each in system.hardware.walk() if each.kind is StructureKind.SYSTEM]
     context.model["name"] = systems[-1] if systems else _NAME
     build_hardware(context, details.handlers)

@@ -18,8 +18,10 @@ from amalthea_uros.inchron.ids import NAMESPACE
 from amalthea_uros.inchron.read import SUFFIX, is_project_name
 from amalthea_uros.inchron.write import project_text
 from amalthea_uros.perf.named import Brief
+from amalthea_uros.perf.system import System
 from amalthea_uros.services.files import save_text
 from amalthea_uros.services.subject import SystemInput, open_system
+from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,8 +79,26 @@ def _project_text(opened: SystemInput, ids: UUID) -> tuple[str, tuple[Finding, .
     from amalthea_uros.inchron_bridge.amalthea import details_of
     from amalthea_uros.inchron_bridge.build import build_project
 
-    built = build_project(opened.system, details_of(opened.model) if opened.model is not None else None)
+    details = details_of(opened.model) if opened.model is not None else None
+    built = build_project(opened.system, details, iterations_of(opened.system))
     return project_text(built.model, ids), built.findings
+
+
+def iterations_of(system: System) -> dict[str, tuple[Time, Time]]:
+    """The shortest and the longest time between two iterations of executors, by the stimuli that stand for them, where it is bounded.
+
+    These are what the analysis proves; where it proves none, nothing is in the result.
+    """
+    if not system.executors:
+        return {}
+    from amalthea_uros.analyze.system import analyze_system
+
+    found = {}
+    for executor in analyze_system(system).executors:
+        least, most = executor.loop.least, executor.loop.most
+        if most is not None and least < most:
+            found |= {name: (least, most) for name in system.processes[executor.task].stimuli}
+    return found
 
 
 def _model_text(opened: SystemInput) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -12,6 +13,7 @@ from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics import values
 from amalthea_uros.inchron_bridge.basics.comments import note_fields
 from amalthea_uros.perf.system import System
+from amalthea_uros.units import Time
 
 
 class Exporting:
@@ -20,14 +22,21 @@ class Exporting:
     Attributes
     ----------
     units : as a model spells quantities, by the name of the object and the value; none for descriptions
+    iterations : the shortest and the longest time between two iterations of executors, by the stimuli that stand for them
     entry : number of the next entry of a call graph
     condition : number of the next condition
     holder : name of the object whose references are being resolved
     """
 
-    def __init__(self, system: System, units: Mapping[tuple[str, int], str]) -> None:
+    def __init__(
+        self,
+        system: System,
+        units: Mapping[tuple[str, int], str],
+        iterations: Mapping[str, tuple[Time, Time]] = MappingProxyType({}),
+    ) -> None:
         self.system = system
         self.units = units
+        self.iterations = iterations
         self.model = ProjectObject("Model")
         self.entry = 0
         self.condition = 0
@@ -100,11 +109,11 @@ class Exporting:
 def _finding(rule: str, what: str, how: str, sources: list[Any], names: Counter[str]) -> Finding:
     first = next((name for name in names if name), "")
     times = f" ({len(sources)} times)" if len(sources) > 1 else ""
-    of = f" of {first}" if first else ""
+    of = f"{first}: " if first else ""
     if rule == "INC004":
-        message = f"{what}{of} has no place in an INCHRON project{times}: {how}"
+        message = f"{of}{what} has no place in an INCHRON project{times}: {how}"
         return Finding(rule, Severity.WARNING, message, _place(sources), "", first)
-    return Finding(rule, Severity.INFO, f"{what}{of} is written in another form{times}: {how}", _place(sources), "", first)
+    return Finding(rule, Severity.INFO, f"{of}{what}, written {how}{times}", _place(sources), "", first)
 
 
 def _name(source: Any) -> str:

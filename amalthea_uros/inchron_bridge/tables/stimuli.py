@@ -169,11 +169,17 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
 
 def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
     """What stands for a stimulus that a project cannot have: its highest rate, or nothing if that is unknown."""
-    shortest = _shortest_distance(stimulus)
-    if shortest:
-        made = _random(stimulus.name, shortest, context, "", distance=shortest, relative=True)
-        context.changed(stimulus, type(stimulus).__name__, "as activations at the highest rate")
-        made["variation"] = ProjectObject("PeriodVariation", type="Uniform")
+    span = context.iterations.get(stimulus.name)
+    rate = _highest_rate(stimulus)
+    if span is not None:
+        shortest, longest = span
+        variation = _variation("Uniform", context, "", max=longest - shortest)
+        made = _random(stimulus.name, shortest, context, "", variation=variation, relative=True)
+        context.changed(stimulus, "the iterations of an executor", "as activations between the shortest and the longest iteration")
+    elif rate is not None:
+        period, shortest = rate
+        made = _random(stimulus.name, period, context, "", distance=shortest)
+        context.changed(stimulus, type(stimulus).__name__, "as activations at the highest rate that lasts")
     else:
         made = _generator(LIST, stimulus.name, context)
         context.lost(stimulus, type(stimulus).__name__, "nothing is activated there; only amuros reads it, in a comment")
@@ -181,13 +187,16 @@ def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
     return made
 
 
-def _shortest_distance(stimulus: perf.Stimulus) -> int | None:
+def _highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
+    """The least period that lasts, and the least distance; None if they are unknown."""
     match stimulus:
         case perf.ArrivalCurve(points=points):
-            spans = [point.lower for point in points if point.occurrences == 2 and point.lower]
-            return min(spans) if spans else None
+            periods = [point.lower // (point.occurrences - 1) for point in points if point.occurrences > 1 and point.lower]
+            shortest = [point.lower for point in points if point.occurrences == 2]
+            return (max(periods), shortest[0] if shortest else None) if periods and max(periods) > 0 else None
         case perf.VariableRate(step=step, rate=rate, scenario=None) if (most := highest(rate)) and most > 0:
-            return int(step / most) or None
+            period = int(step / most)
+            return (period, None) if period else None
     return None
 
 
