@@ -55,10 +55,26 @@ def _importer_option(*names: str, **more: Any) -> Any:
 @click.command("export", cls=_ExportCommand)
 @click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @click.option(
-    "-o", "--out", "target", type=OUTPUT_FILE, help="The file to write: project.iprx, or model.amxmi for a project; default: standard output."
+    "-o",
+    "--out",
+    "target",
+    type=OUTPUT_FILE,
+    help="The file to write: project.iprx, or model.amxmi for a project; default: standard output.",
 )
-@click.option("--importer", "is_importer", is_flag=True, help="Behave as chronSUITE expects an importer to: messages, exit codes, --version.")
-@click.option("--version", is_flag=True, expose_value=False, is_eager=True, callback=_show_version, help="Show the version of what is written.")
+@click.option(
+    "--importer",
+    "is_importer",
+    is_flag=True,
+    help="Behave as chronSUITE expects an importer to: messages, exit codes, --version.",
+)
+@click.option(
+    "--version",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_show_version,
+    help="Show the version of what is written.",
+)
 @click.option("--stable-from-value", metavar="TEXT", help="Let the ids of objects depend on a text.")
 @click.option("--stable-from-hash", is_flag=True, help="Let them depend on the content of the files.")
 @click.option("--no-stable", is_flag=True, help="Let them be random.")

@@ -225,7 +225,9 @@ class _Reader:
             if feature.many:
                 item[feature.name] = list(dict.fromkeys([*item[feature.name], *found]))
             elif len(targets) > 1:
-                self.error(f"{feature.name} of {item.kind} {item.name!r} refers to {len(targets)} objects", item.offset, feature.name)
+                self.error(
+                    f"{feature.name} of {item.kind} {item.name!r} refers to {len(targets)} objects", item.offset, feature.name
+                )
             elif found:
                 item[feature.name] = found[0]
 
@@ -234,7 +236,13 @@ class _Reader:
         found = self.ids.get(identity, [])
         if len(found) == 1 and is_a(found[0].kind, feature.type):
             return found[0]
-        reason = "no object has that id" if not found else "several objects have that id" if len(found) > 1 else f"it is a {found[0].kind}"
+        reason = (
+            "no object has that id"
+            if not found
+            else "several objects have that id"
+            if len(found) > 1
+            else f"it is a {found[0].kind}"
+        )
         shown = identity[:40]
         self.error(f"{feature.name} of {item.kind} {item.name!r} refers to {shown!r}: {reason}", item.offset, feature.name)
         return None

@@ -64,7 +64,11 @@ class _Writer:
 
     def text(self) -> str:
         packages = {package_of(item.kind) for item in self.model.walk()} - {"root"}
-        declared = [("xmi", "http://www.omg.org/XMI"), ("xsi", "http://www.w3.org/2001/XMLSchema-instance"), ("root", NAMESPACE)]
+        declared = [
+            ("xmi", "http://www.omg.org/XMI"),
+            ("xsi", "http://www.w3.org/2001/XMLSchema-instance"),
+            ("root", NAMESPACE),
+        ]
         declared += [(prefix_of(package), namespace_of(package)) for package in sorted(packages)]
         attributes = "".join(f' xmlns:{prefix}="{uri}"' for prefix, uri in declared)
         self.write("model", "ContainerElement", self.model, 1)

@@ -82,7 +82,9 @@ def _value(element: Element) -> int | None:
 
 
 def _property(element: Any, key: str) -> Any:
-    return next((each.value.value for each in element.custom_properties if each.key == key and hasattr(each.value, "value")), None)
+    return next(
+        (each.value.value for each in element.custom_properties if each.key == key and hasattr(each.value, "value")), None
+    )
 
 
 def _policies(task: am.Task) -> dict[str, str]:

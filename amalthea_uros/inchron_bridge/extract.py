@@ -114,6 +114,8 @@ def _with_unknown(system: System, dispatch: Dispatch) -> System:
             stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, stimulus)),
             software=replace(system.software, tasks=(*system.software.tasks, task)),
             os=replace(system.os, systems=(*system.os.systems, OperatingSystem(name=name, schedulers=(scheduler,)))),
-            mapping=replace(system.mapping, tasks=(*system.mapping.tasks, TaskAllocation(task=name, scheduler=name, priority=2**31 - 1))),
+            mapping=replace(
+                system.mapping, tasks=(*system.mapping.tasks, TaskAllocation(task=name, scheduler=name, priority=2**31 - 1))
+            ),
         )
     return system

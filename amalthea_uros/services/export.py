@@ -42,9 +42,7 @@ class ExportResult(Brief):
     findings: tuple[Finding, ...]
 
 
-def export(
-    paths: StrPath | Iterable[StrPath], target: StrPath, ids: UUID = NAMESPACE, *, write: bool = True
-) -> ExportResult:
+def export(paths: StrPath | Iterable[StrPath], target: StrPath, ids: UUID = NAMESPACE, *, write: bool = True) -> ExportResult:
     """Write models, or an `app.yaml`, as an INCHRON project; and a project, if that is given, as an AMALTHEA model.
 
     Parameters
@@ -97,7 +95,7 @@ def iterations_of(system: System) -> dict[str, tuple[Time, Time]]:
     for executor in analyze_system(system).executors:
         least, most = executor.loop.least, executor.loop.most
         if most is not None and least < most:
-            found |= {name: (least, most) for name in system.processes[executor.task].stimuli}
+            found |= dict.fromkeys(system.processes[executor.task].stimuli, (least, most))
     return found
 
 
@@ -128,5 +126,3 @@ def hashed(paths: Sequence[Path]) -> UUID:
 def valued(text: str) -> UUID:
     """The namespace of ids that depends on a text."""
     return uuid5(NAMESPACE, text)
-
-

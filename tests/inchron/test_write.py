@@ -20,7 +20,9 @@ def scheduler(name, *below):
 
 def project(*processes):
     """A project with the given processes below Sch0 of OS."""
-    config = ProjectObject("RtosConfig", name="RtosConfig", schedulables=[scheduler("IsrScheduler", scheduler("Sch0", *processes))])
+    config = ProjectObject(
+        "RtosConfig", name="RtosConfig", schedulables=[scheduler("IsrScheduler", scheduler("Sch0", *processes))]
+    )
     return ProjectObject("Model", name="Sys", systems=[ProjectObject("GenericSystem", name="OS", rtosConfig=config)])
 
 

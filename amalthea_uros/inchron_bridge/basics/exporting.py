@@ -48,7 +48,9 @@ class Exporting:
     def register(self, kind: str, name: str, item: ProjectObject) -> ProjectObject:
         """Register an object as a target of references by a name that is unique within a kind."""
         if (kind, name) in self._objects:
-            self._errors.append(Finding("INC003", Severity.ERROR, f"duplicate name {name!r}: two objects of kind {kind} have it"))
+            self._errors.append(
+                Finding("INC003", Severity.ERROR, f"duplicate name {name!r}: two objects of kind {kind} have it")
+            )
         self._objects[kind, name] = item
         return item
 
@@ -102,7 +104,8 @@ class Exporting:
         if self._errors:
             raise WriteError(dict.fromkeys(self._errors))
         return tuple(
-            _finding(rule, what, how, sources, Counter(map(_name, sources))) for (what, how, rule), sources in self._lost.items()
+            _finding(rule, what, how, sources, Counter(map(_name, sources)))
+            for (what, how, rule), sources in self._lost.items()
         )
 
 

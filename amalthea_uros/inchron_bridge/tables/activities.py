@@ -12,7 +12,7 @@ from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.conditions import build_condition, whole_number
 from amalthea_uros.inchron_bridge.tables.demand import of_every_core_type
 from amalthea_uros.inchron_bridge.tables.distributions import build_demand
-from amalthea_uros.inchron_bridge.tables.rows import Column, Row, choice, refers, refers_to_several
+from amalthea_uros.inchron_bridge.tables.rows import Row, choice, refers, refers_to_several
 from amalthea_uros.perf import activities as perf
 
 #: What an activity is called that comes as a whole from a comment.
@@ -207,7 +207,13 @@ class _Graph:
 
     def named(self, pattern: str, activity: perf.Activity) -> str:
         """The name of the next item."""
-        name = pattern.format(**{name: getattr(activity, name) for name in ("runnable", "stimulus", "semaphore", "label") if hasattr(activity, name)})
+        name = pattern.format(
+            **{
+                name: getattr(activity, name)
+                for name in ("runnable", "stimulus", "semaphore", "label")
+                if hasattr(activity, name)
+            }
+        )
         self.number += 1
         return f"{name}_{self.number - 1}"
 

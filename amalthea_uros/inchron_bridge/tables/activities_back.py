@@ -79,7 +79,9 @@ def _entry(entry: ProjectObject, context: Importing) -> Iterator[perf.Activity]:
 def _case(entry: ProjectObject, context: Importing) -> perf.Case:
     condition = None if entry["negated"] else extract_condition(entry["condition"], context)
     name = context.noted(entry).get("name", "")
-    return perf.Case(activities=_entries(entry["graphEntries"], context), condition=condition, name=name if isinstance(name, str) else "")
+    return perf.Case(
+        activities=_entries(entry["graphEntries"], context), condition=condition, name=name if isinstance(name, str) else ""
+    )
 
 
 def _sequence(entry: ProjectObject, context: Importing) -> Iterator[perf.Activity]:
@@ -210,7 +212,9 @@ def _event(item: ProjectObject, context: Importing) -> perf.Activity:
 def _communication(item: ProjectObject, context: Importing) -> perf.Activity:
     access = item["dataAccess"]
     label = context.name_of("DataObject", access["dataObject"]) if access is not None else None
-    notified = [context.name_of("Function", each) for each in item["notifiedFunctions"]] if item.kind == "VariableWriteAccess" else []
+    notified = (
+        [context.name_of("Function", each) for each in item["notifiedFunctions"]] if item.kind == "VariableWriteAccess" else []
+    )
     if label is None or item["connection"] is not None or None in notified:
         return _unknown(item, context, "it uses a data flow connection")
     return perf.SenderReceiverAccess(

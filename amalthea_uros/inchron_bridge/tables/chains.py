@@ -126,7 +126,9 @@ class _Chain:
                 before = node
             target.add("predecessors", before)
 
-    def inner(self, items: perf.Sequence | perf.Parallel | None, chain: perf.EventChain | perf.Segment, depth: int) -> list[list[ProjectObject]]:
+    def inner(
+        self, items: perf.Sequence | perf.Parallel | None, chain: perf.EventChain | perf.Segment, depth: int
+    ) -> list[list[ProjectObject]]:
         """The branches between the ends; the last one of several is the barrier that joins them."""
         if depth > _DEPTH:
             raise UnknownError("it contains itself")

@@ -53,7 +53,10 @@ def _expression(comparison: perf.Comparison, context: Exporting) -> ProjectObjec
                 return ProjectObject("ValueExpression", value=counter, constant=number, relationalOperator=operator)
         case perf.ModeLabelsAre(first=first, relation=relation, second=second):
             operator = _RELATIONS[relation]
-            for kind, made, feature in (("ModeGroup", "ModeGroupComparison", "modeGroup"), ("Counter", "ValueComparison", "value")):
+            for kind, made, feature in (
+                ("ModeGroup", "ModeGroupComparison", "modeGroup"),
+                ("Counter", "ValueComparison", "value"),
+            ):
                 ends = context.find(kind, first), context.find(kind, second)
                 if None not in ends:
                     values = {f"{feature}1": ends[0], f"{feature}2": ends[1]}

@@ -30,7 +30,9 @@ def is_approximated(ticks: Distribution[int]) -> bool:
     match ticks:
         case Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper):
             unbounded = lower is None and upper is None
-            return not (float(mean).is_integer() and float(deviation).is_integer() and (unbounded or None not in (lower, upper)))
+            return not (
+                float(mean).is_integer() and float(deviation).is_integer() and (unbounded or None not in (lower, upper))
+            )
         case Constant() | Boundaries():
             return False
     return type(ticks).__name__ in ("Statistics", "Bounds", "Weibull")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import isfinite
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
@@ -46,23 +47,38 @@ def _build(value: Any, unit: Callable[[int], ProjectObject], context: Exporting,
             made = {"type": "Uniform", "min": unit(lower), "max": unit(upper)}
         case perf.Statistics(lower=lower, average=average, upper=upper):
             sigma = max(average - lower, upper - average) / 3
-            made = {"type": "Normal", "min": unit(lower), "max": unit(upper), "mean": unit(int(average)), "sigma": unit(int(sigma))}
-            context.changed(source, "a demand with lower bound, average and upper bound", "as a normal distribution within the bounds")
+            made = {
+                "type": "Normal",
+                "min": unit(lower),
+                "max": unit(upper),
+                "mean": unit(whole_part(average)),
+                "sigma": unit(whole_part(sigma)),
+            }
+            context.changed(
+                source, "a demand with lower bound, average and upper bound", "as a normal distribution within the bounds"
+            )
         case perf.Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper):
-            made = {"type": "Normal", "mean": unit(int(mean)), "sigma": unit(int(deviation))}
+            made = {"type": "Normal", "mean": unit(whole_part(mean)), "sigma": unit(whole_part(deviation))}
             made |= {"min": unit(lower or 0), "max": unit(upper or 0)}
         case perf.Weibull(lower=lower, average=average, upper=upper, exceeding=exceeding):
-            made = {"type": "WeibullEstimator", "min": unit(lower), "max": unit(upper), "mean": unit(int(average))}
+            made = {"type": "WeibullEstimator", "min": unit(lower), "max": unit(upper), "mean": unit(whole_part(average))}
             made["outlierProbability"] = exceeding / 1000 if exceeding > 0 else _PER_MILLE / 1000
         case perf.Beta(alpha=alpha, beta=beta, lower=lower, upper=upper):
             made = {"type": "Beta", "alpha": float(alpha), "beta": float(beta), "min": unit(lower), "max": unit(upper)}
         case perf.Histogram(buckets=buckets):
             entries = [
-                ProjectObject("DiscreteDistributionEntry", count=each.occurrences, lower=unit(each.lower), upper=unit(each.upper))
+                ProjectObject(
+                    "DiscreteDistributionEntry", count=each.occurrences, lower=unit(each.lower), upper=unit(each.upper)
+                )
                 for each in buckets
             ]
             made = {"type": "Discrete", "discreteDistribution": entries}
     return ProjectObject("TimeDistribution", **made)
+
+
+def whole_part(number: float) -> int:
+    """A number of a project, which is whole: without its fraction, as the importer of INCHRON writes it."""
+    return int(number) if isfinite(number) else 0
 
 
 def extract(item: ProjectObject, number: Callable[[ProjectObject], int | None]) -> perf.Distribution[int] | None:

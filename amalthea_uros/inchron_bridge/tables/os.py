@@ -79,10 +79,14 @@ class _System:
     def scheduler(self, scheduler: perf.Scheduler) -> ProjectObject:
         """A scheduler with its policy."""
         context = self.context
-        strategy = STRATEGIES.get(standard_policy(scheduler.policy) or "", UNKNOWN_STRATEGY if scheduler.policy else "FixedPriority")
+        strategy = STRATEGIES.get(
+            standard_policy(scheduler.policy) or "", UNKNOWN_STRATEGY if scheduler.policy else "FixedPriority"
+        )
         made = ProjectObject("Scheduler", name=scheduler.name, strategy=strategy, cpuCores=self.cores(scheduler))
         if scheduler.policy is None:
-            context.changed(scheduler, "a scheduler without a policy", "as one by fixed priorities, as the importer of INCHRON takes it")
+            context.changed(
+                scheduler, "a scheduler without a policy", "as one by fixed priorities, as the importer of INCHRON takes it"
+            )
         if strategy == UNKNOWN_STRATEGY:
             context.keep(made, scheduler, "policy")
         elif scheduler.policy not in _WRITTEN:

@@ -96,7 +96,7 @@ class _System:
         for process in processes:
             isr = self.context.name_of("Process", process)
             stated = self.context.noted(process).get("controller")
-            if isr is None or stated is None and self.system.name == GLOBAL:
+            if isr is None or (stated is None and self.system.name == GLOBAL):
                 continue
             controller = controllers.get(stated if isinstance(stated, str) else "", next(iter(controllers.values())))
             self.found.isrs.append(IsrAllocation(isr=isr, controller=controller, priority=self.priority(process, root)))

@@ -122,7 +122,10 @@ def _synchronization(limit: perf.EventSynchronization, context: Exporting) -> Pr
     for number, (start, end) in enumerate((a, b) for a in events for b in events if a is not b):
         interval = _interval(None, limit.tolerance, context, limit.name)
         name = f"{limit.name}_{number}"
-        group.add("requirements", ProjectObject("requirement.EventTimingRequirement", name=name, start=start, end=end, interval=interval))
+        group.add(
+            "requirements",
+            ProjectObject("requirement.EventTimingRequirement", name=name, start=start, end=end, interval=interval),
+        )
     return group
 
 
@@ -131,7 +134,9 @@ def _data_age(limit: perf.DataAgeConstraint, context: Exporting) -> ProjectObjec
     if write is None or read is None or limit.latest is None:
         raise UnknownError("it has no latest time, or no label")
     interval = _interval(limit.earliest, limit.latest, context, limit.name)
-    return ProjectObject("requirement.EventTimingRequirement", name=limit.name, start=write, end=read, trigger=read, interval=interval)
+    return ProjectObject(
+        "requirement.EventTimingRequirement", name=limit.name, start=write, end=read, trigger=read, interval=interval
+    )
 
 
 def _requirement(requirement: perf.Requirement, context: Exporting) -> ProjectObject:
@@ -149,10 +154,14 @@ def _requirement(requirement: perf.Requirement, context: Exporting) -> ProjectOb
         case perf.LoadLimit(metric=perf.LoadMetric.LOAD, value=value, bound=bound, core=core) if core is not None:
             operator = "le" if bound is perf.Bound.UPPER else "ge"
             resource = context.need("CpuCore", core, name)
-            return ProjectObject("requirement.LoadRequirement", name=name, loadResource=resource, limit=value, relationalOperator=operator)
+            return ProjectObject(
+                "requirement.LoadRequirement", name=name, loadResource=resource, limit=value, relationalOperator=operator
+            )
         case perf.CountLimit(metric=metric, value=0, bound=perf.Bound.UPPER) if metric in _FAILURES and process is not None:
             others = [each for each in context.model.walk() if each.kind == "Process" and each is not process]
-            return ProjectObject("requirement.RtosFailureRequirement", name=name, enabledRtosFailures=[_FAILURES[metric]], blacklist=others)
+            return ProjectObject(
+                "requirement.RtosFailureRequirement", name=name, enabledRtosFailures=[_FAILURES[metric]], blacklist=others
+            )
     raise UnknownError(f"there is no requirement on the {limit.metric}")
 
 

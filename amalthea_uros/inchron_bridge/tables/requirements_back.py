@@ -56,8 +56,12 @@ def _understood(item: ProjectObject, context: Importing, events: EventsReader) -
             lower, upper = _interval(item)
             return [
                 perf.LatencyConstraint(
-                    name=context.name("Constraint", item), chain=_chain(item, events), kind=_kind(item),
-                    minimum=lower or None, maximum=upper, origin=origin,
+                    name=context.name("Constraint", item),
+                    chain=_chain(item, events),
+                    kind=_kind(item),
+                    minimum=lower or None,
+                    maximum=upper,
+                    origin=origin,
                 )
             ]
         case "requirement.PeriodicEventRequirement":
@@ -73,7 +77,10 @@ def _understood(item: ProjectObject, context: Importing, events: EventsReader) -
             bounds = [(lower or None, perf.Bound.LOWER), (upper, perf.Bound.UPPER)]
             return [
                 perf.Requirement(
-                    name=item.name, process=process, limit=perf.TimeLimit(metric=_METRICS[kind], value=value, bound=bound), origin=origin
+                    name=item.name,
+                    process=process,
+                    limit=perf.TimeLimit(metric=_METRICS[kind], value=value, bound=bound),
+                    origin=origin,
                 )
                 for value, bound in bounds
                 if value is not None
@@ -108,5 +115,3 @@ def _kind(item: ProjectObject) -> perf.LatencyKind:
     if item["strategy"] not in kinds:
         raise UnknownError(f"its strategy {item['strategy']} is not understood")
     return kinds[item["strategy"]]
-
-

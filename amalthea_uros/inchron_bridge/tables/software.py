@@ -27,9 +27,7 @@ TASK = Row(perf.Task, "Process", activation_limit="activationLimit")
 ISR = Row(perf.Isr, "Process", ("category",))
 RUNNABLE = Row(perf.Runnable, "Function", ("is_overhead", "condition"), callback="callback", service="service")
 LABEL = Row(perf.Label, "memory.DataObject", ("constant", "volatile", "protection"))
-SEMAPHORE = Row(
-    Semaphore, "Semaphore", ("kind", "ceiling", "ownership"), users="maxValue", initial_users="initialValue"
-)
+SEMAPHORE = Row(Semaphore, "Semaphore", ("kind", "ceiling", "ownership"), users="maxValue", initial_users="initialValue")
 
 
 def trace_events(names: tuple[str, ...]) -> list[ProjectObject]:
@@ -76,7 +74,9 @@ def _build_modes(context: Exporting) -> None:
         if mode is None:
             context.lost(label, "a mode label without a mode")
         elif mode.literals:
-            made = ProjectObject("ModeGroup", name=label.name, modes=[ProjectObject("Mode", name=each) for each in mode.literals])
+            made = ProjectObject(
+                "ModeGroup", name=label.name, modes=[ProjectObject("Mode", name=each) for each in mode.literals]
+            )
             first = next((each for each in made["modes"] if each.name == label.initial), None)
             made["initialMode"] = first or made["modes"][0]
             _note_initial(made, label, is_known=first is not None, context=context)

@@ -126,7 +126,9 @@ def extract_placements(context: Importing, model: ProjectObject) -> tuple[Placem
     return tuple(found)
 
 
-def _modes(context: Importing, model: ProjectObject, items: list[ProjectObject]) -> tuple[list[perf.Mode], list[perf.ModeLabel]]:
+def _modes(
+    context: Importing, model: ProjectObject, items: list[ProjectObject]
+) -> tuple[list[perf.Mode], list[perf.ModeLabel]]:
     """Modes and mode labels; a project has the literals in each label."""
     modes = {mode.name: mode for mode in context.list_of(model, "modes", (perf.Mode,))}
     labels = [*context.list_of(model, "mode_labels", (perf.ModeLabel,))]

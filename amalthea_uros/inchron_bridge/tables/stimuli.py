@@ -9,6 +9,7 @@ from amalthea_uros.inchron_bridge.basics.comments import note_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.activities import next_entry
 from amalthea_uros.inchron_bridge.tables.conditions import build_condition
+from amalthea_uros.inchron_bridge.tables.distributions import whole_part
 from amalthea_uros.perf import distributions
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.activities import Trigger
@@ -130,8 +131,8 @@ def _periodic(stimulus: perf.Periodic, context: Exporting) -> ProjectObject:
             pass
         case distributions.Gauss(deviation=deviation, lower=lower, upper=upper) as gauss:
             bounds = {"min": lower or 0, "max": upper or 0}
-            variation = _variation("Normal", context, name, sigma=int(deviation), **bounds)
-            lost = bool(gauss.mean) or (lower is None) != (upper is None) or int(deviation) != deviation
+            variation = _variation("Normal", context, name, sigma=whole_part(deviation), **bounds)
+            lost = bool(gauss.mean) or (lower is None) != (upper is None) or whole_part(deviation) != deviation
         case _:
             low, high = lowest(jitter), highest(jitter)
             lost = not isinstance(jitter, distributions.Uniform)
@@ -150,10 +151,10 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
     is_exact = True
     match distance:
         case distributions.Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper):
-            period = int(mean)
+            period = whole_part(mean)
             bounds = {} if lower is None or upper is None else {"min": lower - period, "max": upper - period}
-            variation = _variation("Normal", context, name, sigma=int(deviation), **bounds)
-            is_exact = (period, int(deviation)) == (mean, deviation) and (lower is None) == (upper is None)
+            variation = _variation("Normal", context, name, sigma=whole_part(deviation), **bounds)
+            is_exact = (period, whole_part(deviation)) == (mean, deviation) and (lower is None) == (upper is None)
         case _:
             period = lowest(distance) or 0
             width = (highest(distance) or 0) - period
@@ -162,7 +163,9 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
     made = _random(name, period, context, name, offset=stimulus.offset, variation=variation, relative=True)
     context.keep(made, stimulus, "has_maximum")
     if not is_exact:
-        context.changed(stimulus, "a distance of another distribution", "uniformly distributed within its bounds, or around its mean")
+        context.changed(
+            stimulus, "a distance of another distribution", "uniformly distributed within its bounds, or around its mean"
+        )
         note_whole(made, STIMULUS, stimulus)
     return made
 
@@ -175,7 +178,9 @@ def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
         shortest, longest = span
         variation = _variation("Uniform", context, "", max=longest - shortest)
         made = _random(stimulus.name, shortest, context, "", variation=variation, relative=True)
-        context.changed(stimulus, "the iterations of an executor", "as activations between the shortest and the longest iteration")
+        context.changed(
+            stimulus, "the iterations of an executor", "as activations between the shortest and the longest iteration"
+        )
     elif rate is not None:
         period, shortest = rate
         made = _random(stimulus.name, period, context, "", distance=shortest)
@@ -195,7 +200,7 @@ def _highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
             shortest = [point.lower for point in points if point.occurrences == 2]
             return (max(periods), shortest[0] if shortest else None) if periods and max(periods) > 0 else None
         case perf.VariableRate(step=step, rate=rate, scenario=None) if (most := highest(rate)) and most > 0:
-            period = int(step / most)
+            period = whole_part(step / most)
             return (period, None) if period else None
     return None
 
@@ -234,5 +239,3 @@ def _sequence(graph: ProjectObject, stimulus: perf.Stimulus, context: Exporting)
     switch.add("entries", entry)
     graph.add("graphEntries", switch)
     return entry.add("graphEntries", next_entry("CallSequence", context))
-
-

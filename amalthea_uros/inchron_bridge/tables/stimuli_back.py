@@ -180,10 +180,21 @@ class StimuliReader:
         found = tuple(time for time in times if time is not None)
         if item.kind == LIST:
             name = known["name"]
-            others = [self.context.name("Stimulus", entry, f"{name}_{number}") for number, entry in enumerate(item["entries"]) if number]
-            return [perf.Single(**{**known, "name": each}, time=time) for each, time in zip([name, *others], found, strict=False)]
+            others = [
+                self.context.name("Stimulus", entry, f"{name}_{number}")
+                for number, entry in enumerate(item["entries"])
+                if number
+            ]
+            return [
+                perf.Single(**{**known, "name": each}, time=time) for each, time in zip([name, *others], found, strict=False)
+            ]
         driver = item["sourceGenerator"]
-        if driver is None or driver.kind != GENERATOR or (item["period"], item["offset"]) != (1, 0) or item["delay"] is not None:
+        if (
+            driver is None
+            or driver.kind != GENERATOR
+            or (item["period"], item["offset"]) != (1, 0)
+            or item["delay"] is not None
+        ):
             return None
         base = self._random(driver, {"name": known["name"]}) if _obstacle(driver) is None else None
         if base is None or not isinstance(base[0], perf.Periodic) or base[0].jitter is not None or not found:
