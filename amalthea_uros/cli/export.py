@@ -35,9 +35,10 @@ class _ExportCommand(click.Command):
         try:
             return super().make_context(info_name, args, *rest, **extra)
         except click.UsageError as error:
-            if is_importer:
-                error.exit_code = _WRONG_USE
-            raise
+            if not is_importer:
+                raise
+            error.show()
+            sys.exit(_WRONG_USE)
 
 
 def _show_version(context: click.Context, _parameter: click.Parameter, value: bool) -> None:
@@ -45,11 +46,6 @@ def _show_version(context: click.Context, _parameter: click.Parameter, value: bo
     if value:
         click.echo(f"amuros {__version__}\nversion: {VERSION}\ncapabilities: +multi")
         context.exit()
-
-
-def _importer_option(*names: str, **more: Any) -> Any:
-    """An option that only importers have; `--help` does not list it."""
-    return click.option(*names, hidden=True, **more)
 
 
 @click.command("export", cls=_ExportCommand)
@@ -78,9 +74,9 @@ def _importer_option(*names: str, **more: Any) -> Any:
 @click.option("--stable-from-value", metavar="TEXT", help="Let the ids of objects depend on a text.")
 @click.option("--stable-from-hash", is_flag=True, help="Let them depend on the content of the files.")
 @click.option("--no-stable", is_flag=True, help="Let them be random.")
-@_importer_option("--stable", is_flag=True, expose_value=False)
-@_importer_option("--relax", is_flag=True, expose_value=False)
-@_importer_option("-Q", "is_dry", is_flag=True)
+@click.option("--stable", is_flag=True, expose_value=False, hidden=True)
+@click.option("--relax", is_flag=True, expose_value=False, hidden=True)
+@click.option("-Q", "is_dry", is_flag=True, hidden=True)
 def export(
     paths: tuple[Path, ...],
     target: Path | None,

@@ -1,4 +1,4 @@
-"""What the INCHRON metamodel declares, in the form of the facts of AMALTHEA versions (`facts.txt`)."""
+"""The declarations of the INCHRON metamodel, in the form of the facts of AMALTHEA versions (`facts.txt`)."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ def is_a(kind: str, wanted: str) -> bool:
 @cache
 def only_class(kind: str) -> str | None:
     """The only class whose objects a feature of a type can hold; None if there are several."""
-    found = metamodel().concrete_subtypes(kind)
-    return found[0] if len(found) == 1 else None
+    result = metamodel().concrete_subtypes(kind)
+    return result[0] if len(result) == 1 else None
 
 
 def package_of(kind: str) -> str:

@@ -18,12 +18,12 @@ NAMESPACE = uuid5(UUID(int=0), "com.inchron.am2inc")
 def intrinsic_ids(model: ProjectObject, namespace: UUID = NAMESPACE) -> dict[ProjectObject, str]:
     """The ids of a model and of all referable objects in it; unlike the importer's they are unique, also where names are not."""
     # The model is the part `model` of the root, whose id is that of the namespace; the root itself has no attribute for it.
-    found = {model: _text(uuid5(namespace, f"{_text(namespace)}/@model.{model.name}"))}
-    _add(model, found[model], found, namespace, set(found.values()))
-    return found
+    result = {model: _text(uuid5(namespace, f"{_text(namespace)}/@model.{model.name}"))}
+    _add(model, result[model], result, namespace, set(result.values()))
+    return result
 
 
-def _add(item: ProjectObject, above: str, found: dict[ProjectObject, str], namespace: UUID, used: set[str]) -> None:
+def _add(item: ProjectObject, above: str, result: dict[ProjectObject, str], namespace: UUID, used: set[str]) -> None:
     counts: dict[str, int] = {}
     for feature, part in item.parts():
         own = above
@@ -38,8 +38,8 @@ def _add(item: ProjectObject, above: str, found: dict[ProjectObject, str], names
             if own in used:
                 own = _text(uuid5(namespace, f"{path}#{number}"))
             used.add(own)
-            found[part] = own
-        _add(part, own, found, namespace, used)
+            result[part] = own
+        _add(part, own, result, namespace, used)
 
 
 def _text(uuid: UUID) -> str:

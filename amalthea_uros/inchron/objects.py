@@ -104,9 +104,9 @@ class ProjectObject:
         """The object itself and all within it."""
         waiting = [self]
         while waiting:
-            found = waiting.pop()
-            yield found
-            waiting += reversed([part for _, part in found.parts()])
+            result = waiting.pop()
+            yield result
+            waiting += reversed([part for _, part in result.parts()])
 
 
 def default_of(feature: FeatureFact) -> Any:
@@ -137,7 +137,7 @@ def parsed(type_name: str, text: str) -> Any:
 
 
 def problems(root: ProjectObject) -> Iterator[tuple[ProjectObject, str]]:
-    """What in a project the metamodel does not allow: objects, each with what is wrong with it."""
+    """Violations of the metamodel in a project: objects, each with the reason."""
     for item in root.walk():
         for name, feature in features(item.kind).items():
             values = item[name] if feature.many else [] if item[name] is None else [item[name]]

@@ -81,11 +81,11 @@ class _Reader:
             raise malformed(self.path, self.text, error, self.parser.ErrorByteIndex, opened) from None
         self.resolve()
         model = self.root["model"] if self.root is not None and not self.errors else None
-        if self.root is not None and not self.errors and (model is None or model.kind != "Model"):
+        if not self.errors and (model is None or model.kind != "Model"):
             self.error("the project has no model", 0)
-        if self.errors:
+        if self.errors or model is None:
             raise ReadError(self.errors)
-        findings = [self.left_out(name, *found) for name, found in self.unknown.items()]
+        findings = [self.left_out(name, *result) for name, result in self.unknown.items()]
         return Project(path=self.path, model=model, source=self.source, findings=tuple(findings))
 
     def error(self, message: str, offset: int, attribute: str = "") -> None:
@@ -136,7 +136,7 @@ class _Reader:
         """The root element."""
         namespace, _, name = tag.rpartition(" ")
         if name != "Root" or not namespace.startswith(_FAMILY):
-            self.error(f"this is no INCHRON project: the root element is {name!r}", self.parser.CurrentByteIndex)
+            self.error(f"not an INCHRON project: the root element is {name!r}", self.parser.CurrentByteIndex)
             self.stack.append(None)
             return
         if namespace != NAMESPACE:
@@ -191,14 +191,14 @@ class _Reader:
     def value(self, item: ProjectObject, feature: FeatureFact, text: str) -> None:
         """Set an attribute."""
         try:
-            found = parsed(feature.type, text)
+            result = parsed(feature.type, text)
         except ValueError as error:
             self.error(f"{feature.name} of {item.kind} {item.name!r}: {error}", item.offset, feature.name)
             return
         if feature.many:
-            item.values.setdefault(feature.name, []).append(found)
+            item.values.setdefault(feature.name, []).append(result)
         else:
-            item[feature.name] = found
+            item[feature.name] = result
 
     def characters(self, text: str) -> None:
         """Text within an element."""
@@ -207,11 +207,11 @@ class _Reader:
 
     def end(self, _tag: str) -> None:
         """End an element."""
-        found = self.stack.pop()
+        result = self.stack.pop()
         self.names.pop()
         holder = self.stack[-1] if self.stack else None
-        if isinstance(found, tuple) and isinstance(holder, ProjectObject):
-            feature, texts = found
+        if isinstance(result, tuple) and isinstance(holder, ProjectObject):
+            feature, texts = result
             if feature.kind is FeatureKind.REFERENCE:
                 self.references.append((holder, feature, "".join(texts)))
             else:
@@ -221,27 +221,27 @@ class _Reader:
         """Let references refer to objects."""
         for item, feature, text in self.references:
             targets = [self.target(item, feature, each) for each in text.split()]
-            found = [target for target in targets if target is not None]
+            result = [target for target in targets if target is not None]
             if feature.many:
-                item[feature.name] = list(dict.fromkeys([*item[feature.name], *found]))
+                item[feature.name] = list(dict.fromkeys([*item[feature.name], *result]))
             elif len(targets) > 1:
                 self.error(
                     f"{feature.name} of {item.kind} {item.name!r} refers to {len(targets)} objects", item.offset, feature.name
                 )
-            elif found:
-                item[feature.name] = found[0]
+            elif result:
+                item[feature.name] = result[0]
 
     def target(self, item: ProjectObject, feature: FeatureFact, identity: str) -> ProjectObject | None:
         """The object with an id."""
-        found = self.ids.get(identity, [])
-        if len(found) == 1 and is_a(found[0].kind, feature.type):
-            return found[0]
+        result = self.ids.get(identity, [])
+        if len(result) == 1 and is_a(result[0].kind, feature.type):
+            return result[0]
         reason = (
             "no object has that id"
-            if not found
+            if not result
             else "several objects have that id"
-            if len(found) > 1
-            else f"it is a {found[0].kind}"
+            if len(result) > 1
+            else f"it is a {result[0].kind}"
         )
         shown = identity[:40]
         self.error(f"{feature.name} of {item.kind} {item.name!r} refers to {shown!r}: {reason}", item.offset, feature.name)

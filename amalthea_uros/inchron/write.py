@@ -29,9 +29,9 @@ def project_text(model: ProjectObject, namespace: UUID = NAMESPACE_OF_IDS) -> st
     WriteError : the metamodel does not allow the project; each reason is a finding.
     """
     link_opposites(model)
-    if found := [_finding(item, reason) for item, reason in problems(model)]:
-        raise WriteError(found)
-    return _Writer(model, namespace).text()
+    if result := [_finding(item, reason) for item, reason in problems(model)]:
+        raise WriteError(result)
+    return _ProjectWriter(model, namespace).text()
 
 
 def link_opposites(model: ProjectObject) -> None:
@@ -56,7 +56,7 @@ def _finding(item: ProjectObject, reason: str) -> Finding:
     return Finding("INC002", Severity.ERROR, message, None, "State in the model what is missing.", item.name)
 
 
-class _Writer:
+class _ProjectWriter:
     def __init__(self, model: ProjectObject, namespace: UUID) -> None:
         self.model = model
         self.ids = intrinsic_ids(model, namespace)

@@ -1,4 +1,4 @@
-"""What only an AMALTHEA model says and a project has a place for: how quantities are spelled, ports, caches, callback servers."""
+"""Details that only AMALTHEA models state, and that projects can have: spelling of quantities, ports, caches, callback servers."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class AmaltheaDetails:
 
 
 def details_of(model: Model) -> AmaltheaDetails:
-    """What a model says beyond its system."""
+    """The details of a model that its system does not have."""
     units: dict[tuple[str, int], str] = {}
     modules: list[Any] = []
     connections: list[Any] = []
@@ -59,7 +59,7 @@ def details_of(model: Model) -> AmaltheaDetails:
             connections.append(element)
         elif isinstance(element, am.Task) and _property(element, _SERVER) is True:
             servers[name] = _policies(element)
-    handlers = frozenset(each.name for each in modules if isinstance(each, am.ConnectionHandler) and _is_memory_bus(each))
+    handlers = frozenset(each.name or "" for each in modules if isinstance(each, am.ConnectionHandler) and _is_memory_bus(each))
     return AmaltheaDetails(
         units=units, modules=tuple(modules), connections=tuple(connections), handlers=handlers, servers=servers
     )
@@ -88,12 +88,12 @@ def _property(element: Any, key: str) -> Any:
 
 
 def _policies(task: am.Task) -> dict[str, str]:
-    found = {}
+    result = {}
     for group in task.activity_graph.items if task.activity_graph else ():
         if isinstance(group, am.Group):
             policy = _property(group, _POLICY)
-            found[group.name or ""] = policy if policy in ("FIFO", "LIFO", "Priority") else "FIFO"
-    return found
+            result[group.name or ""] = policy if policy in ("FIFO", "LIFO", "Priority") else "FIFO"
+    return result
 
 
 def add_details(model: ProjectObject, details: AmaltheaDetails) -> None:
@@ -134,8 +134,8 @@ def _add_ports(holder: ProjectObject, module: Any, ports: dict[Any, ProjectObjec
             holder["bitWidth"] = ProjectObject("DataSize", value=port.bit_width or 0, unit="B")
         ports[port] = made
     if is_handler and module.ports:
-        widest = max(port.bit_width or 0 for port in module.ports)
-        holder["bitWidth"] = ProjectObject("DataSize", value=widest, unit="bit")
+        most = max(port.bit_width or 0 for port in module.ports)
+        holder["bitWidth"] = ProjectObject("DataSize", value=most, unit="bit")
 
 
 def _roles(holder: ProjectObject) -> set[str]:
@@ -145,7 +145,8 @@ def _roles(holder: ProjectObject) -> set[str]:
 def _complete_cache(holder: ProjectObject, definition: am.CacheDefinition) -> None:
     if (line := bits(definition.line_size)) is not None:
         holder["lineSize"] = ProjectObject("DataSize", value=line, unit="bit")
-    kind = {am.CacheType.INSTRUCTION: "Instruction", am.CacheType.DATA: "Data"}.get(definition.cache_type)
+    kinds: dict[am.CacheType | None, str] = {am.CacheType.INSTRUCTION: "Instruction", am.CacheType.DATA: "Data"}
+    kind = kinds.get(definition.cache_type)
     holder["cacheType"] = kind or "Unified"
     holder["writePolicy"] = "WriteBack" if definition.write_strategy is am.WriteStrategy.WRITEBACK else "WriteThrough"
     holder["coherency"] = bool(definition.coherency)

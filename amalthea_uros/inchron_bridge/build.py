@@ -10,10 +10,10 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron.write import link_opposites
 from amalthea_uros.inchron_bridge.amalthea import AmaltheaDetails, add_details
-from amalthea_uros.inchron_bridge.basics.comments import note_list, note_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_list, keep_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.importing import Importing
-from amalthea_uros.inchron_bridge.basics.orders import note_orders
+from amalthea_uros.inchron_bridge.basics.orders import keep_orders
 from amalthea_uros.inchron_bridge.basics.seals import seal_all
 from amalthea_uros.inchron_bridge.tables.chains import build_chains
 from amalthea_uros.inchron_bridge.tables.hardware import build_hardware
@@ -81,34 +81,34 @@ def build_project(
 
 
 def _keep_lists(context: Exporting) -> None:
-    """What a project has no objects for, and the hardware where it says more than a project."""
+    """Keep the objects that a project has no class for, and the hardware where it says more than a project."""
     system, model = context.system, context.model
     for channel in system.software.channels:
         context.lost(channel, "Channel")
     for overhead in system.os.overheads:
         context.lost(overhead, "Overhead")
-    note_list(model, "channels", system.software.channels)
-    note_list(model, "overheads", system.os.overheads)
-    note_list(model, "modes", system.software.modes)
+    keep_list(model, "channels", system.software.channels)
+    keep_list(model, "overheads", system.os.overheads)
+    keep_list(model, "modes", system.software.modes)
     modes = {mode.name for mode in system.software.modes}
-    note_list(model, "mode_labels", [label for label in system.software.mode_labels if label.mode not in modes])
-    note_list(model, "clocks", system.stimuli.clocks)
-    note_list(model, "events", system.events.events)
-    note_list(model, "chains", [chain for chain in system.events.chains if context.find("EventGraph", chain.name) is None])
+    keep_list(model, "mode_labels", [label for label in system.software.mode_labels if label.mode not in modes])
+    keep_list(model, "clocks", system.stimuli.clocks)
+    keep_list(model, "events", system.events.events)
+    keep_list(model, "chains", [chain for chain in system.events.chains if context.find("EventGraph", chain.name) is None])
     placed = [each for each in system.mapping.placements if each.element not in system.labels or each.address]
-    note_list(model, "placements", placed)
-    note_orders(model, system)
+    keep_list(model, "placements", placed)
+    keep_orders(model, system)
     if extract_hardware(Importing(model), model) != system.hardware:
-        note_whole(model, HARDWARE, system.hardware)
+        keep_whole(model, HARDWARE, system.hardware)
 
 
 def _keep_middleware(context: Exporting) -> None:
     """Executors and the network: a project has no classes for them."""
     system = context.system
     for executor in system.executors:
-        note_whole(context.need("Process", executor.task, executor.name), "executor", executor)
+        keep_whole(context.need("Process", executor.task, executor.name), "executor", executor)
     for transmission in system.network.transmissions:
-        note_whole(context.need("Process", transmission.name, transmission.name), "transmission", transmission)
+        keep_whole(context.need("Process", transmission.name, transmission.name), "transmission", transmission)
     network = replace(system.network, transmissions=())
     if network != Network():
-        note_whole(context.model, "network", network)
+        keep_whole(context.model, "network", network)

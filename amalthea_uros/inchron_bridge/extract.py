@@ -8,7 +8,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron.project import Project
 from amalthea_uros.inchron_bridge.basics.importing import Importing
-from amalthea_uros.inchron_bridge.basics.orders import in_noted_order
+from amalthea_uros.inchron_bridge.basics.orders import in_kept_order
 from amalthea_uros.inchron_bridge.tables.chains_back import EventsReader
 from amalthea_uros.inchron_bridge.tables.hardware_back import core_frequency, extract_hardware
 from amalthea_uros.inchron_bridge.tables.os_back import Dispatch, extract_systems, processes_of
@@ -64,7 +64,7 @@ def _system(context: Importing, model: ProjectObject) -> System:
     dispatch = extract_systems(context, model)
     software = extract_software(context, model, stimuli.of_process)
     events = EventsReader(context, model)
-    found = events.read()
+    result = events.read()
     system = System(
         hardware=hardware,
         os=Os(
@@ -79,10 +79,10 @@ def _system(context: Importing, model: ProjectObject) -> System:
             isrs=tuple(dispatch.isrs),
             placements=(*extract_placements(context, model), *context.list_of(model, "placements", (Placement,))),
         ),
-        events=found,
+        events=result,
         constraints=extract_constraints(context, model, events),
     )
-    return _with_unknown(in_noted_order(_with_middleware(system, context, model), context.noted(model)), dispatch)
+    return _with_unknown(in_kept_order(_with_middleware(system, context, model), context.noted(model)), dispatch)
 
 
 def _with_middleware(system: System, context: Importing, model: ProjectObject) -> System:

@@ -33,7 +33,7 @@ class ExportResult(Brief):
     paths : the files that it was made of
     target : the file that was written
     text : its content
-    findings : problems found while reading, what has no place in the other language, and what is written in another form
+    findings : problems of reading, what has no place in the other language, and what is written in another form
     """
 
     paths: tuple[Path, ...]
@@ -62,15 +62,16 @@ def export(paths: StrPath | Iterable[StrPath], target: StrPath, ids: UUID = NAME
     if target.suffix and not is_model and not is_project_name(target):
         raise InvalidArgumentError(f"{target} is neither an INCHRON project ({SUFFIX}) nor an AMALTHEA model (.amxmi)")
     with paused_garbage_collection():
-        opened = open_system(paths if isinstance(paths, str | Path) else list(paths))
+        opened = open_system(paths)
+        findings: tuple[Finding, ...] = ()
         if is_model:
-            text, findings = _model_text(opened), ()
+            text = _model_text(opened)
         else:
             text, findings = _project_text(opened, ids)
     if write:
         save_text(target, text)
-    found = unsuppressed((*opened.findings, *findings))
-    return ExportResult(paths=opened.paths, target=target, text=text, findings=found)
+    result = unsuppressed((*opened.findings, *findings))
+    return ExportResult(paths=opened.paths, target=target, text=text, findings=result)
 
 
 def _project_text(opened: SystemInput, ids: UUID) -> tuple[str, tuple[Finding, ...]]:
@@ -91,12 +92,12 @@ def iterations_of(system: System) -> dict[str, tuple[Time, Time]]:
         return {}
     from amalthea_uros.analyze.system import analyze_system
 
-    found = {}
+    result: dict[str, tuple[Time, Time]] = {}
     for executor in analyze_system(system).executors:
         least, most = executor.loop.least, executor.loop.most
         if most is not None and least < most:
-            found |= dict.fromkeys(system.processes[executor.task].stimuli, (least, most))
-    return found
+            result |= dict.fromkeys(system.processes[executor.task].stimuli, (least, most))
+    return result
 
 
 def _model_text(opened: SystemInput) -> str:
@@ -113,14 +114,14 @@ def hashed(paths: Sequence[Path]) -> UUID:
     ------
     InvalidArgumentError : a file cannot be read.
     """
-    found = NAMESPACE
+    result = NAMESPACE
     for path in paths:
         try:
             content = b"" if path == STANDARD_INPUT else read_bytes(path, MODEL_SIZE)
         except FileError as error:
             raise InvalidArgumentError(f"{path} cannot be read: {error.reason}") from None
-        found = uuid5(found, content.hex())
-    return found
+        result = uuid5(result, content.hex())
+    return result
 
 
 def valued(text: str) -> UUID:

@@ -99,7 +99,7 @@ def edited(before, after):
         ('priority="7"', f'priority="{10**30}"', "does not fit into 64 bits"),
         ('priority="7"', 'isr="yes"', "neither true nor false"),
         ('priority="7"', 'cpuCores="_nobody"', "no object has that id"),
-        ("root:Root", "root:Other", "no INCHRON project"),
+        ("root:Root", "root:Other", "not an INCHRON project"),
     ],
 )
 def test_what_is_wrong_is_refused_with_its_place(before, after, message):

@@ -62,7 +62,7 @@ def plain_value(value: Any, *, tagged: bool = False) -> Any:
 
     Parameters
     ----------
-    tagged : with the class of each object, by which alternatives are told apart that have the same fields
+    tagged : with the class of each object, which distinguishes alternatives with the same fields
     """
     if is_dataclass(value):
         stated = ((each.name, getattr(value, each.name), each) for each in fields(value) if each.compare)
@@ -125,13 +125,13 @@ def typed_value(hint: Any, content: Any, where: str) -> Any:
 
 
 def _alternative(arguments: tuple[Any, ...], content: Any, where: str) -> Any:
-    """The one of several types that a value has: by its tag, or by its type; the first one if neither tells."""
+    """The one of several types that a value has: by its tag, or by its type; otherwise the first one."""
     kinds = [argument for argument in arguments if argument is not NoneType]
     if isinstance(content, dict) and TAG in content:
-        found = [kind for kind in kinds if (get_origin(kind) or kind).__name__ == content[TAG]]
-        if not found:
+        matching = [kind for kind in kinds if (get_origin(kind) or kind).__name__ == content[TAG]]
+        if not matching:
             raise UnknownError(f"{content[TAG]!r} is none of the classes of {where}")
-        return found[0]
+        return matching[0]
     return next((kind for kind in kinds if kind is type(content)), kinds[0])
 
 

@@ -1,1 +1,1 @@
-"""What all tables need: values, comments, the state of one run."""
+"""Shared by all tables: values, comments, the state of one run."""

@@ -1,4 +1,4 @@
-"""What a project has no class or feature for, as JSON in the comment of an object: other tools show it and leave it alone."""
+"""Values that a project has no class or feature for, as JSON in the comment of an object: other tools show it and leave it alone."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 _BEGIN = "amuros "
 
 
-def note_fields(item: ProjectObject, source: Any, names: Iterable[str]) -> tuple[str, ...]:
+def keep_fields(item: ProjectObject, source: Any, names: Iterable[str]) -> tuple[str, ...]:
     """Keep fields in the comment that are not at their defaults; returns their names."""
     declared = {field.name: field for field in fields(source)}
     kept = [name for name in names if getattr(source, name) != default_value(declared[name])]
@@ -24,15 +24,15 @@ def note_fields(item: ProjectObject, source: Any, names: Iterable[str]) -> tuple
     return tuple(kept)
 
 
-def note_whole(item: ProjectObject, key: str, source: Any) -> None:
+def keep_whole(item: ProjectObject, key: str, source: Any) -> None:
     """Keep an object in the comment."""
     note(item, **{key: plain_value(source, tagged=True)})
 
 
-def note_list(item: ProjectObject, key: str, sources: Iterable[Any]) -> None:
+def keep_list(item: ProjectObject, key: str, sources: Iterable[Any]) -> None:
     """Keep objects in the comment."""
-    if found := [plain_value(source, tagged=True) for source in sources]:
-        note(item, **{key: found})
+    if result := [plain_value(source, tagged=True) for source in sources]:
+        note(item, **{key: result})
 
 
 def note(item: ProjectObject, **content: Any) -> None:
@@ -43,7 +43,7 @@ def note(item: ProjectObject, **content: Any) -> None:
 
 
 def noted(item: ProjectObject) -> dict[str, Any]:
-    """What the comment keeps; nothing in comments of others.
+    """The content of a comment of ours; empty for any other comment.
 
     Raises
     ------
@@ -53,15 +53,15 @@ def noted(item: ProjectObject) -> dict[str, Any]:
     if not text.startswith(_BEGIN):
         return {}
     try:
-        found = json.loads(text.removeprefix(_BEGIN))
+        result = json.loads(text.removeprefix(_BEGIN))
     except (ValueError, RecursionError) as error:
         raise UnknownError(f"its comment is damaged: {error}") from None
-    if not isinstance(found, dict):
+    if not isinstance(result, dict):
         raise UnknownError("its comment is damaged: it is not an object")
-    return found
+    return result
 
 
-def noted_fields(item: ProjectObject, kind: type[Any], names: Iterable[str]) -> dict[str, Any]:
+def kept_fields(item: ProjectObject, kind: type[Any], names: Iterable[str]) -> dict[str, Any]:
     """The values of the fields of a class that the comment keeps.
 
     Raises
@@ -76,7 +76,7 @@ def noted_fields(item: ProjectObject, kind: type[Any], names: Iterable[str]) -> 
     return {name: typed_value(hints[name], content[name], f"{kind.__name__}.{name}") for name in present}
 
 
-def noted_whole(item: ProjectObject, key: str, kinds: Iterable[type[T]], **known: Any) -> T | None:
+def kept_whole(item: ProjectObject, key: str, kinds: Iterable[type[T]], **known: Any) -> T | None:
     """The object of one of some classes that the comment keeps under a key; None if there is none.
 
     Raises
@@ -88,7 +88,7 @@ def noted_whole(item: ProjectObject, key: str, kinds: Iterable[type[T]], **known
 
 
 def whole(content: Any, kinds: Iterable[type[T]], **known: Any) -> T:
-    """An object of one of some classes; raises as `noted_whole`."""
+    """An object of one of some classes; raises as `kept_whole`."""
     kind = next((kind for kind in kinds if isinstance(content, dict) and kind.__name__ == content.get(TAG)), None)
     if kind is None:
         raise UnknownError("its comment has no object of a known class")

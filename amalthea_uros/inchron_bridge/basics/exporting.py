@@ -11,7 +11,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics import values
-from amalthea_uros.inchron_bridge.basics.comments import note_fields
+from amalthea_uros.inchron_bridge.basics.comments import keep_fields
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
 
@@ -60,12 +60,12 @@ class Exporting:
 
     def need(self, kind: str, name: str, holder: str) -> ProjectObject:
         """The object of a name; an error if there is none."""
-        found = self.find(kind, name)
-        if found is None:
+        result = self.find(kind, name)
+        if result is None:
             message = f"{holder} refers to an undefined {kind} {name!r}"
             self._errors.append(Finding("INC003", Severity.ERROR, message, None, "Define it.", holder))
             return ProjectObject(kind if kind != "DataObject" else "memory.DataObject", name=name)
-        return found
+        return result
 
     def trace_event(self, kind: str, name: str | None, event: str) -> ProjectObject | None:
         """The trace event of a process, function or data object."""
@@ -83,7 +83,7 @@ class Exporting:
 
     def keep(self, item: ProjectObject, source: Any, *names: str) -> None:
         """Keep fields in the comment that the project has no feature for, and report them."""
-        for name in note_fields(item, source, names):
+        for name in keep_fields(item, source, names):
             self.lost(source, f"{type(source).__name__}.{name}")
 
     def lost(self, source: Any, what: str, how: str = "only amuros reads it, in a comment") -> None:
@@ -115,8 +115,8 @@ def _finding(rule: str, what: str, how: str, sources: list[Any], names: Counter[
     of = f"{first}: " if first else ""
     if rule == "INC004":
         message = f"{of}{what} has no place in an INCHRON project{times}: {how}"
-        return Finding(rule, Severity.WARNING, message, _place(sources), "", first)
-    return Finding(rule, Severity.INFO, f"{of}{what}, written {how}{times}", _place(sources), "", first)
+        return Finding("INC004", Severity.WARNING, message, _place(sources), "", first)
+    return Finding("INC005", Severity.INFO, f"{of}{what}, written {how}{times}", _place(sources), "", first)
 
 
 def _name(source: Any) -> str:
@@ -126,8 +126,8 @@ def _name(source: Any) -> str:
 def _place(sources: list[Any]) -> Location | None:
     for source in sources:
         if (origin := getattr(source, "origin", None)) is not None:
-            found: Location = origin
-            return found
+            result: Location = origin
+            return result
         if (locate := getattr(source, "locate", None)) is not None:
             return locate()  # type: ignore[no-any-return]
     return None

@@ -10,7 +10,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron.project import Project
-from amalthea_uros.inchron_bridge.basics.comments import noted, noted_fields, noted_whole, whole
+from amalthea_uros.inchron_bridge.basics.comments import kept_fields, kept_whole, noted, whole
 from amalthea_uros.inchron_bridge.basics.seals import require_sealed
 from amalthea_uros.units import Frequency
 
@@ -39,15 +39,15 @@ class Importing:
 
     def name(self, kind: str, item: ProjectObject, wish: str | None = None) -> str:
         """Give an object a name that is unique within a kind."""
-        own = found = wish or item.name or f"unnamed_{item.kind.rpartition('.')[2]}"
+        own = result = wish or item.name or f"unnamed_{item.kind.rpartition('.')[2]}"
         number = 2
-        while (kind, found) in self._taken:
-            found, number = f"{own}_{number}", number + 1
-        if found != own:
-            self.note("INC007", f"another {kind} has the name {own!r}, too; this one is called {found!r} here", item)
-        self._taken.add((kind, found))
-        self._names.setdefault(kind, {})[item] = found
-        return found
+        while (kind, result) in self._taken:
+            result, number = f"{own}_{number}", number + 1
+        if result != own:
+            self.note("INC007", f"another {kind} has the name {own!r}, too; this one is called {result!r} here", item)
+        self._taken.add((kind, result))
+        self._names.setdefault(kind, {})[item] = result
+        return result
 
     def share(self, kind: str, item: ProjectObject, name: str) -> None:
         """Let an object have the same name within another kind."""
@@ -66,7 +66,7 @@ class Importing:
         return partial(self.location, item)
 
     def noted(self, item: ProjectObject) -> dict[str, Any]:
-        """What the comment of an object keeps; nothing, with a finding, if it is damaged."""
+        """The content of the comment of an object; empty, with a finding, if it is damaged."""
         try:
             return noted(item)
         except UnknownError as error:
@@ -76,7 +76,7 @@ class Importing:
     def fields(self, item: ProjectObject, kind: type[Any], names: Iterable[str]) -> dict[str, Any]:
         """The values of fields that the comment keeps; none, with a finding, if it is damaged."""
         try:
-            return noted_fields(item, kind, names)
+            return kept_fields(item, kind, names)
         except UnknownError as error:
             self.comment_unused(item, error)
             return {}
@@ -84,24 +84,24 @@ class Importing:
     def whole(self, item: ProjectObject, key: str, kinds: Iterable[type[T]], *, sealed: bool = True, **known: Any) -> T | None:
         """The object that the comment keeps under a key; None, with a finding, if it is damaged, or the project was changed."""
         try:
-            found = noted_whole(item, key, kinds, **known)
-            if found is not None and sealed:
+            result = kept_whole(item, key, kinds, **known)
+            if result is not None and sealed:
                 require_sealed(item)
         except UnknownError as error:
             self.comment_unused(item, error)
             return None
-        return found
+        return result
 
     def list_of(self, item: ProjectObject, key: str, kinds: Iterable[type[T]]) -> tuple[T, ...]:
         """The objects that the comment keeps under a key; those that are damaged are left out, with a finding."""
         content = self.noted(item).get(key)
-        found = []
+        result = []
         for each in content if isinstance(content, list) else ():
             try:
-                found.append(whole(each, kinds))
+                result.append(whole(each, kinds))
             except UnknownError as error:
                 self.comment_unused(item, error)
-        return tuple(found)
+        return tuple(result)
 
     def comment_unused(self, item: ProjectObject, error: UnknownError) -> None:
         """Report that a comment of ours says nothing."""

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import note
 from amalthea_uros.perf.system import System
 
-#: Lists of a system: its part, the field, and the field of an item that tells it from the others.
+#: Lists of a system: its part, the field, and the field of an item that identifies it.
 _LISTS = (
     ("software", "tasks", "name"),
     ("software", "isrs", "name"),
@@ -30,26 +31,31 @@ _LISTS = (
 _KEY = "order"
 
 
-def note_orders(model: ProjectObject, system: System) -> None:
+def keep_orders(model: ProjectObject, system: System) -> None:
     """Keep the orders of lists with several objects, where no object stands twice."""
-    found = {}
+    result = {}
     for part, field, name in _LISTS:
         names = [getattr(item, name) for item in getattr(getattr(system, part), field)]
         if len(names) > 1:
-            found[f"{part}.{field}"] = names
-    if found:
-        note(model, **{_KEY: found})
+            result[f"{part}.{field}"] = names
+    if result:
+        note(model, **{_KEY: result})
 
 
-def in_noted_order(system: System, content: Mapping[str, Any]) -> System:
+def in_kept_order(system: System, content: Mapping[str, Any]) -> System:
     """The system with its lists in the order that a comment keeps; objects that it does not know come last."""
-    orders = content.get(_KEY)
+    stated = content.get(_KEY)
+    orders: dict[str, Any] = stated if isinstance(stated, dict) else {}
     parts: dict[str, Any] = {part: getattr(system, part) for part, _, _ in _LISTS}
-    for part, field, name in _LISTS if isinstance(orders, dict) else ():
+    for part, field, name in _LISTS:
         names = orders.get(f"{part}.{field}")
         if isinstance(names, list):
             places = {each: place for place, each in enumerate(names) if isinstance(each, str)}
             items = getattr(parts[part], field)
-            ordered = sorted(items, key=lambda item, name=name, places=places: places.get(getattr(item, name), len(places)))
+            ordered = sorted(items, key=partial(_place, places=places, name=name))
             parts[part] = replace(parts[part], **{field: tuple(ordered)})
     return replace(system, **parts)
+
+
+def _place(item: Any, places: Mapping[str, int], name: str) -> int:
+    return places.get(getattr(item, name), len(places))

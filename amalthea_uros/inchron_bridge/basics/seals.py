@@ -47,7 +47,7 @@ def require_sealed(item: ProjectObject) -> None:
 
 
 def _sealed(item: ProjectObject) -> Iterable[ProjectObject]:
-    """What a seal is about: the object, and of a model its hardware."""
+    """The objects that a seal covers: the object itself; of a model, its hardware."""
     span = noted(item).get("span")
     if type(span) is int and item.owner is not None:
         entries = next((parts for parts in _lists(item.owner) if item in parts), [item])

@@ -58,8 +58,8 @@ def size_of(item: ProjectObject | None) -> int | None:
 
 def frequency(value: Frequency, unit: str | None = None) -> ProjectObject:
     """A frequency."""
-    if unit not in _FREQUENCIES:
-        unit = next((each for each, hertz in reversed(_FREQUENCIES.items()) if value >= hertz), "Hz")
+    if unit is None or unit not in _FREQUENCIES:
+        unit = next((each for each, hertz in reversed(tuple(_FREQUENCIES.items())) if value >= hertz), "Hz")
     return ProjectObject("Frequency", value=float(value / _FREQUENCIES[unit]), unit=unit)
 
 

@@ -1,4 +1,4 @@
-"""What processes and functions do: the entries of their call graphs."""
+"""Activities of processes and functions: the entries of their call graphs."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from dataclasses import replace
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note, note_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole, note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.conditions import build_condition, whole_number
 from amalthea_uros.inchron_bridge.tables.demand import of_every_core_type
 from amalthea_uros.inchron_bridge.tables.distributions import build_demand
 from amalthea_uros.inchron_bridge.tables.rows import Row, choice, refers, refers_to_several
 from amalthea_uros.perf import activities as perf
+from amalthea_uros.perf.stimuli import Counter
 
 #: What an activity is called that comes as a whole from a comment.
 ACTIVITY = "activity"
@@ -122,23 +123,23 @@ class _Graph:
 
     def entries(self, activities: tuple[perf.Activity, ...]) -> list[ProjectObject]:
         """The entries for activities; sequences are cut where there is a branch, a loop or a group."""
-        found = [next_entry("CallSequence", self.context)]
+        result = [next_entry("CallSequence", self.context)]
         for activity in activities:
             match activity:
                 case perf.Group():
-                    found += self.group(activity)
+                    result += self.group(activity)
                 case perf.Switch():
-                    found.append(self.switch(activity))
+                    result.append(self.switch(activity))
                 case perf.ProbabilitySwitch():
-                    found.append(self.probability_switch(activity))
+                    result.append(self.probability_switch(activity))
                 case perf.Loop():
-                    found.append(self.loop(activity))
+                    result.append(self.loop(activity))
                 case _:
                     for item in self.items(activity):
-                        found[-1].add("calls", item)
+                        result[-1].add("calls", item)
                     continue
-            found.append(next_entry("CallSequence", self.context))
-        return [entry for entry in found if entry.kind != "CallSequence" or entry["calls"]]
+            result.append(next_entry("CallSequence", self.context))
+        return [entry for entry in result if entry.kind != "CallSequence" or entry["calls"]]
 
     def group(self, group: perf.Group) -> list[ProjectObject]:
         """A sequence with the name of the group; others within it stand beside it, as sequences do not contain any."""
@@ -147,19 +148,19 @@ class _Graph:
             context.lost(group, "a group without an order", "its activities are in the order in which they are stated")
         is_simple = not any(isinstance(each, perf.WITH_PARTS) for each in group.activities)
         if is_simple:
-            found = [ProjectObject("CallSequence", name=group.name)]
+            result = [ProjectObject("CallSequence", name=group.name)]
             for activity in group.activities:
                 for item in self.items(activity):
-                    found[0].add("calls", item)
+                    result[0].add("calls", item)
         else:
-            found = self.entries(group.activities) or [next_entry("CallSequence", context)]
+            result = self.entries(group.activities) or [next_entry("CallSequence", context)]
             context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
         if not group.interruptible:
-            _enclose(found, group.name, context)
+            _enclose(result, group.name, context)
         if not (is_simple and group.ordered and group.name):
-            note_whole(found[0], GROUP, group)
-            note(found[0], span=len(found))
-        return found
+            keep_whole(result[0], GROUP, group)
+            note(result[0], span=len(result))
+        return result
 
     def switch(self, switch: perf.Switch) -> ProjectObject:
         """The first case whose condition holds."""
@@ -201,8 +202,8 @@ class _Graph:
             counter = getattr(activity, "counter", None)
             if counter is not None:
                 item["period"], item["offset"] = max(1, counter.prescaler), counter.offset
-                if counter != perf.Counter(prescaler=max(1, counter.prescaler), offset=counter.offset):
-                    note_whole(item, "counter", counter)
+                if counter != Counter(prescaler=max(1, counter.prescaler), offset=counter.offset):
+                    keep_whole(item, "counter", counter)
             yield item
 
     def named(self, pattern: str, activity: perf.Activity) -> str:
@@ -229,7 +230,7 @@ class _Graph:
                 made = build_demand(distribution, context, activity)
                 item = ProjectObject("ResourceConsumption", name=self.named("Tick", activity), timeDistribution=made)
                 if not is_exact:
-                    note_whole(item, ACTIVITY, activity)
+                    keep_whole(item, ACTIVITY, activity)
                 yield item
             case perf.LabelAccess(label=label, kind=kind):
                 item = ProjectObject("ResourceConsumption", name=self.named("LabelAccess_{label}", activity))
@@ -300,7 +301,7 @@ class _Graph:
         """An item that only says that there is something; it takes no time there."""
         kind = type(activity).__name__
         item = ProjectObject("ResourceConsumption", name=kind)
-        note_whole(item, ACTIVITY, activity)
+        keep_whole(item, ACTIVITY, activity)
         self.context.lost(activity, kind)
         return item
 

@@ -1,4 +1,4 @@
-"""What the call graphs of a project do."""
+"""Activities of the call graphs of a project."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from amalthea_uros.inchron_bridge.tables.activities import ACTIVITY, GROUP, ROWS
 from amalthea_uros.inchron_bridge.tables.conditions import extract_condition
 from amalthea_uros.inchron_bridge.tables.distributions import extract
 from amalthea_uros.perf import activities as perf
+from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.units import SECOND
 
 _GENERATED = re.compile(r"CallSequence_\d+")
@@ -38,18 +39,18 @@ def extract_graph(graph: ProjectObject | None, context: Importing) -> tuple[perf
 
 
 def _entries(entries: list[ProjectObject], context: Importing) -> tuple[perf.Activity, ...]:
-    found: list[perf.Activity] = []
+    result: list[perf.Activity] = []
     place = 0
     while place < len(entries):
         entry = entries[place]
         group = context.whole(entry, GROUP, (perf.Group,))
         if group is None:
-            found += _entry(entry, context)
+            result += _entry(entry, context)
             place += 1
         else:
-            found.append(replace(group, locate=context.located(entry)))
+            result.append(replace(group, locate=context.located(entry)))
             place += context.noted(entry)["span"]
-    return tuple(found)
+    return tuple(result)
 
 
 def _entry(entry: ProjectObject, context: Importing) -> Iterator[perf.Activity]:
@@ -113,17 +114,17 @@ def _items(item: ProjectObject, context: Importing) -> Iterator[perf.Activity]:
         if counter is None:
             yield activity
         elif hasattr(activity, "counter"):
-            yield replace(activity, counter=counter)
+            yield replace(activity, counter=counter)  # type: ignore[arg-type]
         else:
             yield _unknown(item, context, "it takes effect only every few times")
 
 
-def _counter(item: ProjectObject, content: dict[str, Any]) -> perf.Counter | None:
+def _counter(item: ProjectObject, content: dict[str, Any]) -> Counter | None:
     if "counter" in content:
         require_sealed(item)
-        return whole(content["counter"], [perf.Counter])
+        return whole(content["counter"], [Counter])
     period, offset = item["period"], item["offset"]
-    return None if (period, offset) == (1, 0) else perf.Counter(prescaler=period, offset=offset)
+    return None if (period, offset) == (1, 0) else Counter(prescaler=period, offset=offset)
 
 
 def _unknown(item: ProjectObject, context: Importing, reason: str = "") -> perf.Incomplete:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.perf import events as perf
 
@@ -37,23 +37,24 @@ def trace_event(event: perf.Event | None, context: Exporting) -> tuple[ProjectOb
     ------
     UnknownError : there is none; the text says why.
     """
-    found = None
-    process = None
+    result = None
+    process: str | None = None
+    name: str | None
     match event:
         case perf.ProcessEvent(process=name, change=change, core=None):
-            found = context.trace_event("Process", name, PROCESS_EVENTS.get(change, "")) if change else None
+            result = context.trace_event("Process", name, PROCESS_EVENTS.get(change, "")) if change else None
         case perf.RunnableEvent(runnable=name, change=change, process=process, core=None):
-            found = context.trace_event("Function", name, RUNNABLE_EVENTS.get(change, "")) if change else None
+            result = context.trace_event("Function", name, RUNNABLE_EVENTS.get(change, "")) if change else None
         case perf.LabelEvent(label=name, change=change, process=process):
-            found = context.trace_event("DataObject", name, LABEL_EVENTS.get(change, "")) if change else None
+            result = context.trace_event("DataObject", name, LABEL_EVENTS.get(change, "")) if change else None
         case perf.StimulusEvent(stimulus=name):
             users = [each for each in context.system.processes.values() if name in each.stimuli]
             if len(users) == 1 and len(users[0].stimuli) == 1:
-                found = context.trace_event("Process", users[0].name, "Activate")
-    if found is None:
+                result = context.trace_event("Process", users[0].name, "Activate")
+    if result is None:
         what = type(event).__name__ if event else "an event that is not stated"
         raise UnknownError(f"it contains {what}{f' {event.name!r}' if event else ''}, for which there is no trace event")
-    return found, context.find("Process", process) if process else None
+    return result, context.find("Process", process) if process else None
 
 
 @dataclass(slots=True)
@@ -69,14 +70,14 @@ def build_chains(context: Exporting) -> None:
     for chain in context.system.events.chains:
         graph = ProjectObject("EventGraph", name=chain.name)
         try:
-            builder = _Chain(graph, context)
+            builder = _ChainGraph(graph, context)
             ends = builder.build(chain, 0)
         except UnknownError as error:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
             continue
         graph["initialNode"], graph["terminalNodes"] = ends.first, [ends.last]
         if not builder.is_exact or not is_plain(chain):
-            note_whole(graph, CHAIN, chain)
+            keep_whole(graph, CHAIN, chain)
         context.model.add("eventChains", context.register("EventGraph", chain.name, graph))
 
 
@@ -92,7 +93,7 @@ def is_plain(chain: perf.EventChain) -> bool:
     return isinstance(chain.items, perf.Sequence) and len(ends) > 2 and ends[-1] == chain.response
 
 
-class _Chain:
+class _ChainGraph:
     """One graph.
 
     Attributes
@@ -170,13 +171,13 @@ class _Chain:
         """A part of the chain, wherever it is described."""
         if isinstance(item, perf.Segment):
             return item
-        found = self.context.system.chains.get(item.chain)
-        if found is None:
+        result = self.context.system.chains.get(item.chain)
+        if result is None:
             raise UnknownError(f"it contains the undefined chain {item.chain!r}")
-        return found
+        return result
 
     def event(self, name: str | None) -> ProjectObject:
-        """A node for an event; for a set of events, a barrier behind a node for each of them."""
+        """A node for an event; for a set of events, refused, as it has several nodes."""
         event = self.context.system.events_by_name.get(name or "")
         if isinstance(event, perf.EventSet) and len(event.events) == 1:
             event = self.context.system.events_by_name.get(event.events[0])
@@ -184,12 +185,12 @@ class _Chain:
             raise UnknownError(f"it contains the set of events {event.name!r}")
         if event is None:
             raise UnknownError("one of its events is not stated")
-        found, process = trace_event(event, self.context)
+        result, process = trace_event(event, self.context)
         if isinstance(event, perf.StimulusEvent) or (isinstance(event, perf.LabelEvent) and event.runnable is not None):
             self.is_exact = False
             self.context.lost(event, "what an event is restricted to, or a stimulus as an event,")
         node = ProjectObject(TRACE_EVENT, name=self.free(event.name))
-        node["first"] = ProjectObject("ConditionalTraceEvent", traceEvent=found, process=process)
+        node["first"] = ProjectObject("ConditionalTraceEvent", traceEvent=result, process=process)
         return self.graph.add("nodes", node)
 
     def free(self, name: str) -> str:

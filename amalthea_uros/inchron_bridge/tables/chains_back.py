@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any, get_args
 
 from amalthea_uros.errors import UnknownError
@@ -18,9 +19,9 @@ from amalthea_uros.inchron_bridge.tables.chains import (
 )
 from amalthea_uros.perf import events as perf
 
-_PROCESS, _RUNNABLE, _LABEL = (
-    {name: change for change, name in table.items()} for table in (PROCESS_EVENTS, RUNNABLE_EVENTS, LABEL_EVENTS)
-)
+_PROCESS = {name: change for change, name in PROCESS_EVENTS.items()}
+_RUNNABLE = {name: change for change, name in RUNNABLE_EVENTS.items()}
+_LABEL = {name: change for change, name in LABEL_EVENTS.items()}
 #: Most nodes of a chain; a graph that is damaged could have a circle.
 _MOST_NODES = 10_000
 
@@ -47,15 +48,15 @@ class EventsReader:
             self.events.append(event)
             self.names.setdefault(_meaning(event), event.name)
         known = {event.name for event in self.events}
-        found = []
+        result = []
         for item in self.model["eventChains"]:
             chain = self.chain(item)
             if chain is not None:
                 self.chains[item] = chain.name
-                found.append(chain)
+                result.append(chain)
         kept = self.context.list_of(self.model, "chains", (perf.EventChain,))
-        found += [chain for chain in kept if _events_of(chain) <= known and chain.name not in self.chains.values()]
-        return perf.Events(events=tuple(self.events), chains=tuple(found))
+        result += [chain for chain in kept if _events_of(chain) <= known and chain.name not in self.chains.values()]
+        return perf.Events(events=tuple(self.events), chains=tuple(result))
 
     def event(self, trace_event: ProjectObject | None, process: ProjectObject | None, wish: str) -> str:
         """The name of the event for a trace event.
@@ -66,27 +67,27 @@ class EventsReader:
         """
         holder = trace_event.owner if trace_event is not None else None
         where = self.context.name_of("Process", process) if process is not None else None
-        found: Any = None
+        result: Any = None
         if trace_event is not None and holder is not None and (process is None or where is not None):
             change = trace_event["type"]
             if holder.kind == "Process" and change in _PROCESS and where in (None, self.context.name_of("Process", holder)):
-                found = perf.ProcessEvent(name=wish, process=self.context.name_of("Process", holder), change=_PROCESS[change])
+                result = perf.ProcessEvent(name=wish, process=self.context.name_of("Process", holder), change=_PROCESS[change])
             elif holder.kind == "Function" and change in _RUNNABLE:
                 name = self.context.name_of("Function", holder)
-                found = perf.RunnableEvent(name=wish, runnable=name, change=_RUNNABLE[change], process=where)
+                result = perf.RunnableEvent(name=wish, runnable=name, change=_RUNNABLE[change], process=where)
             elif holder.kind == "memory.DataObject" and change.lower() in _LABEL:
                 name = self.context.name_of("DataObject", holder)
-                found = perf.LabelEvent(name=wish, label=name, change=_LABEL[change.lower()], process=where)
-        if found is None:
+                result = perf.LabelEvent(name=wish, label=name, change=_LABEL[change.lower()], process=where)
+        if result is None:
             raise UnknownError(f"the trace event {trace_event.name if trace_event is not None else ''!r} is not understood")
-        meaning = _meaning(found)
+        meaning = _meaning(result)
         if meaning not in self.names:
             taken = {event.name for event in self.events}
             name, number = wish, 0
             while name in taken:
                 name, number = f"{wish}_{number}", number + 1
             self.names[meaning] = name
-            self.events.append(type(found)(**{**_fields(found), "name": name}))
+            self.events.append(type(result)(**{**_fields(result), "name": name}))
         return self.names[meaning]
 
     def chain(self, item: ProjectObject) -> perf.EventChain | None:
@@ -101,7 +102,7 @@ class EventsReader:
         if kept is not None and _events_of(kept) <= known:
             return perf.EventChain(name=name, stimulus=kept.stimulus, response=kept.response, items=kept.items, origin=origin)
         try:
-            branches, completed = _Walk(item).branches()
+            branches, completed = _GraphWalk(item).branches()
             lines = [[self.step(node) for node in branch] for branch in branches]
         except UnknownError as error:
             self.context.note("INC006", f"the event chain {item.name!r} is left out: {error}", item)
@@ -121,7 +122,7 @@ class EventsReader:
         return self.event(first["traceEvent"], first["process"], node.name)
 
 
-class _Walk:
+class _GraphWalk:
     """The nodes of a graph from its initial to its terminal node."""
 
     def __init__(self, graph: ProjectObject) -> None:
@@ -150,12 +151,12 @@ class _Walk:
 
     def line(self, first: ProjectObject, start: ProjectObject, end: ProjectObject) -> list[ProjectObject]:
         """The trace events from the first node along one branch."""
-        found, node = [first], start
+        result, node = [first], start
         for _ in range(_MOST_NODES):
             if node.kind == TRACE_EVENT:
-                found.append(node)
+                result.append(node)
             if node is end:
-                return found
+                return result
             following = self.after.get(node, [])
             if len(following) != 1:
                 raise UnknownError("it branches within a branch, or ends early")
@@ -166,7 +167,7 @@ class _Walk:
 def _sequence(names: list[str]) -> perf.Sequence | None:
     if len(names) < 3:
         return None
-    return perf.Sequence(tuple(perf.Segment(stimulus=a, response=b) for a, b in zip(names, names[1:], strict=False)))
+    return perf.Sequence(tuple(perf.Segment(stimulus=a, response=b) for a, b in pairwise(names)))
 
 
 def _meaning(event: Any) -> Any:
@@ -180,8 +181,8 @@ def _fields(event: Any) -> Mapping[str, Any]:
 
 
 def _events_of(chain: Any) -> set[str]:
-    found = {name for name in (chain.stimulus, chain.response) if name is not None}
+    result = {name for name in (chain.stimulus, chain.response) if name is not None}
     for item in chain.items.items if chain.items is not None else ():
         if isinstance(item, perf.Segment):
-            found |= _events_of(item)
-    return found
+            result |= _events_of(item)
+    return result

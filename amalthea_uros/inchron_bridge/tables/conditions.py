@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.perf import conditions as perf
@@ -33,7 +33,7 @@ def build_condition(condition: perf.Condition | None, context: Exporting, source
         if len(known) < len(every) or not every:
             context.lost(source, "a condition", "it is written without content, so that it is unknown when it is true")
             made["conjunctions"] = []
-            note_whole(made, CONDITION, condition)
+            keep_whole(made, CONDITION, condition)
             return made
         made.add("conjunctions", ProjectObject("Conjunction", expressions=known))
     return made

@@ -113,10 +113,10 @@ def extract(item: ProjectObject, number: Callable[[ProjectObject], int | None]) 
 
 
 def _histogram(item: ProjectObject, number: Callable[[ProjectObject], int | None]) -> perf.Histogram[int] | None:
-    found = []
+    result = []
     for entry in item["discreteDistribution"]:
         lower, upper = number(entry["lower"]), number(entry["upper"])
         if lower is None or upper is None:
             return None
-        found.append(perf.Bucket(lower=lower, upper=upper, occurrences=entry["count"]))
-    return perf.Histogram(tuple(found)) if found else None
+        result.append(perf.Bucket(lower=lower, upper=upper, occurrences=entry["count"]))
+    return perf.Histogram(tuple(result)) if result else None

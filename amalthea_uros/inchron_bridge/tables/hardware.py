@@ -55,7 +55,7 @@ def _frequency(clock: perf.Clock, context: Exporting) -> ProjectObject:
 
 def _cpu(structure: perf.Structure, context: Exporting, buses: frozenset[str]) -> ProjectObject:
     system = context.system
-    clocks = [core.clock for core in structure.cores if core.clock in system.clocks]
+    clocks = [core.clock for core in structure.cores if core.clock is not None and core.clock in system.clocks]
     fastest = max(clocks, key=lambda name: system.clocks[name].frequency or 0) if clocks else None
     clock = context.find("Clock", fastest) or context.find("IdealClock", "")
     if fastest is None:
@@ -154,7 +154,7 @@ def _connect(cpus: list[ProjectObject], context: Exporting) -> None:
 
 
 def _local_interconnect(cpu: ProjectObject, several: bool) -> ProjectObject | None:
-    """Make the interconnect of a processor; returns the port to those of others."""
+    """Make the interconnect of a processor; returns the port to the other processors."""
     made = ProjectObject(
         "memory.Interconnect",
         name=f"{cpu.name}_Interconnect",

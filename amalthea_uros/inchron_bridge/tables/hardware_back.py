@@ -24,8 +24,8 @@ def extract_hardware(context: Importing, model: ProjectObject) -> perf.Hardware:
     }
     clocks = [_clock(clock, context) for clock in model["clocks"] if clock["period"] is None or clock.name in used]
     clocks += [perf.Clock(name=name, frequency=frequency) for name, frequency in context.derived_clocks.items()]
-    found = perf.Hardware(clocks=tuple(clocks), structures=structures)
-    return context.whole(model, HARDWARE, (perf.Hardware,)) or found
+    result = perf.Hardware(clocks=tuple(clocks), structures=structures)
+    return context.whole(model, HARDWARE, (perf.Hardware,)) or result
 
 
 def clock_frequency(clock: ProjectObject | None) -> Frequency | None:

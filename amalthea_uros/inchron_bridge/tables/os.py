@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note, note_list
+from amalthea_uros.inchron_bridge.basics.comments import keep_list, note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
@@ -30,7 +30,7 @@ _CORES = "cpuCores"
 def build_systems(context: Exporting) -> None:
     """Make the operating systems with their schedulers, and put the processes below them."""
     for system in context.system.os.systems:
-        _System(system, context).build()
+        _SystemBuilder(system, context).build()
     tasks: dict[str, list[TaskAllocation]] = {}
     for allocation in context.system.mapping.tasks:
         tasks.setdefault(allocation.task, []).append(allocation)
@@ -41,7 +41,7 @@ def build_systems(context: Exporting) -> None:
         _place_task(context.need("Process", task.name, task.name), tasks.get(task.name, []), context)
 
 
-class _System:
+class _SystemBuilder:
     """One operating system."""
 
     def __init__(self, system: perf.OperatingSystem, context: Exporting) -> None:
@@ -62,7 +62,7 @@ class _System:
         if len(system.schedulers) > 1:
             note(made, schedulers=[each.name for each in system.schedulers])
         if system.interrupt_controllers:
-            note_list(self.root, "controllers", system.interrupt_controllers)
+            keep_list(self.root, "controllers", system.interrupt_controllers)
         for scheduler in system.schedulers:
             context.register("Scheduler", scheduler.name, self.scheduler(scheduler))
         for scheduler in system.schedulers:
@@ -74,7 +74,8 @@ class _System:
         """The cores of those that have interrupt service routines, and of the schedulers."""
         used = {allocation.controller for allocation in self.context.system.mapping.isrs}
         controllers = [each for each in self.system.interrupt_controllers if each.name in used]
-        return list(dict.fromkeys(core for each in (*controllers, *self.system.schedulers) for core in self.cores(each)))
+        result = [self.cores(each) for each in controllers] + [self.cores(each) for each in self.system.schedulers]
+        return list(dict.fromkeys(core for cores in result for core in cores))
 
     def scheduler(self, scheduler: perf.Scheduler) -> ProjectObject:
         """A scheduler with its policy."""
@@ -106,14 +107,14 @@ class _System:
 
 def global_system(context: Exporting) -> ProjectObject:
     """The operating system for what belongs to none, made when it is first needed."""
-    found = context.find("System", GLOBAL)
-    if found is None:
+    result = context.find("System", GLOBAL)
+    if result is None:
         default = context.register("Scheduler", DEFAULT, ProjectObject("Scheduler", name=DEFAULT))
         root = context.register("InterruptController", GLOBAL, ProjectObject("Scheduler", name=ROOT, schedulables=[default]))
         config = ProjectObject("RtosConfig", name="RtosConfig", schedulables=[root])
-        found = context.register("System", GLOBAL, ProjectObject("GenericSystem", name=GLOBAL, rtosConfig=config))
-        context.model.add("systems", found)
-    return found
+        result = context.register("System", GLOBAL, ProjectObject("GenericSystem", name=GLOBAL, rtosConfig=config))
+        context.model.add("systems", result)
+    return result
 
 
 def _place_isr(process: ProjectObject, allocation: IsrAllocation | None, context: Exporting) -> None:
@@ -123,14 +124,14 @@ def _place_isr(process: ProjectObject, allocation: IsrAllocation | None, context
         controller = context.need("InterruptController", GLOBAL, GLOBAL)
     if allocation is not None:
         note(process, controller=allocation.controller)
-        found = context.system.interrupt_controllers.get(allocation.controller)
-        process[_CORES] = [context.need("CpuCore", core, process.name) for core in (found.cores if found else ())]
+        result = context.system.interrupt_controllers.get(allocation.controller)
+        process[_CORES] = [context.need("CpuCore", core, process.name) for core in (result.cores if result else ())]
         process["priority"] = allocation.priority or 0
-        _note_priority(process, allocation.priority)
+        _keep_priority(process, allocation.priority)
     controller.add("schedulables", process)
 
 
-def _note_priority(process: ProjectObject, priority: int | None) -> None:
+def _keep_priority(process: ProjectObject, priority: int | None) -> None:
     """A process of a project always has a priority; that it has none is not the same as 0."""
     if priority is None:
         note(process, priority=None)
@@ -142,7 +143,7 @@ def _place_task(process: ProjectObject, allocations: list[TaskAllocation], conte
         context.need("Scheduler", DEFAULT, GLOBAL).add("schedulables", process)
     for allocation in allocations[:1]:
         process["priority"] = allocation.priority or 0
-        _note_priority(process, allocation.priority)
+        _keep_priority(process, allocation.priority)
         process[_CORES] = [context.need("CpuCore", core, process.name) for core in allocation.cores]
         if allocation.deadline is not None:
             process["deadline"] = context.time(allocation.deadline, process.name)

@@ -15,7 +15,7 @@ from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 
 @dataclass(slots=True)
 class Dispatch:
-    """What the schedulers of a project dispatch.
+    """The allocations and operating systems of a project.
 
     Attributes
     ----------
@@ -30,23 +30,23 @@ class Dispatch:
 
 def extract_systems(context: Importing, model: ProjectObject) -> Dispatch:
     """The operating systems with schedulers and allocations."""
-    found = Dispatch()
+    result = Dispatch()
     for system in model["systems"]:
         if system.kind != "GenericSystem":
             context.leave_out(system)
-            found.unknown.append(system)
+            result.unknown.append(system)
             continue
-        _System(system, context, found).extract()
-    return found
+        _SystemReader(system, context, result).extract()
+    return result
 
 
-class _System:
+class _SystemReader:
     """One operating system."""
 
-    def __init__(self, system: ProjectObject, context: Importing, found: Dispatch) -> None:
+    def __init__(self, system: ProjectObject, context: Importing, result: Dispatch) -> None:
         self.system = system
         self.context = context
-        self.found = found
+        self.result = result
         self.schedulers: list[perf.Scheduler] = []
         self.controllers: list[perf.InterruptController] = []
 
@@ -66,7 +66,7 @@ class _System:
             origin=self.context.located(self.system),  # type: ignore[arg-type]
             **kept,
         )
-        self.found.systems.append(made)
+        self.result.systems.append(made)
 
     def root(self, root: ProjectObject) -> None:
         """The root of a scheduler tree: what dispatches interrupts, if there are only schedulers and ISRs below it."""
@@ -99,15 +99,15 @@ class _System:
             if isr is None or (stated is None and self.system.name == GLOBAL):
                 continue
             controller = controllers.get(stated if isinstance(stated, str) else "", next(iter(controllers.values())))
-            self.found.isrs.append(IsrAllocation(isr=isr, controller=controller, priority=self.priority(process, root)))
+            self.result.isrs.append(IsrAllocation(isr=isr, controller=controller, priority=self.priority(process, root)))
 
     def below(self, item: ProjectObject, parent: ProjectObject | None) -> None:
-        """What a scheduler dispatches, besides ISRs of the root."""
+        """Read a part of a scheduler, besides ISRs of the root."""
         if item.kind == "Scheduler":
             self.scheduler(item, parent)
         elif item.kind != "Process":
             self.context.leave_out(item)
-            self.found.unknown.append(item)
+            self.result.unknown.append(item)
 
     def scheduler(self, item: ProjectObject, parent: ProjectObject | None) -> None:
         """A scheduler with the tasks below it."""
@@ -147,7 +147,7 @@ class _System:
             origin=context.located(process),  # type: ignore[arg-type]
             **context.fields(process, TaskAllocation, ("parameters",)),
         )
-        self.found.tasks.append(allocation)
+        self.result.tasks.append(allocation)
 
     def priority(self, process: ProjectObject, above: ProjectObject) -> int | None:
         """The priority; higher numbers are served first, unless the scheduler inverts the order."""

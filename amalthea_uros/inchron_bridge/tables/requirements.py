@@ -7,7 +7,7 @@ from typing import Any
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time
 from amalthea_uros.inchron_bridge.tables.chains import trace_event
@@ -31,14 +31,14 @@ CHAIN_REQUIREMENT = "requirement.EventChainTimingRequirement"
 def build_requirements(context: Exporting) -> None:
     """Make the requirements; limits that cannot be one are kept in the comment of the model."""
     constraints = context.system.constraints
-    found: dict[str, tuple[Any, ...]] = {
+    result: dict[str, tuple[Any, ...]] = {
         "constraints": constraints.constraints,
         "requirements": constraints.requirements,
         "data_ages": constraints.data_ages,
         "orders": constraints.orders,
         "data_groups": constraints.data_groups,
     }
-    for limit in (each for several in found.values() for each in several):
+    for limit in (each for several in result.values() for each in several):
         try:
             made = _BUILD[type(limit)](limit, context)
         except (UnknownError, KeyError) as error:
@@ -47,7 +47,7 @@ def build_requirements(context: Exporting) -> None:
             made = ProjectObject("requirement.GroupOfRequirements", name=limit.name)
             made["evaluate"] = False
         if not _is_plain(limit, made):
-            note_whole(made, LIMIT, limit)
+            keep_whole(made, LIMIT, limit)
         context.model.add("requirements", made)
 
 
@@ -86,10 +86,10 @@ def _latency(limit: perf.LatencyConstraint, context: Exporting) -> ProjectObject
 
 
 def _event(name: str, context: Exporting) -> ProjectObject:
-    found, process = trace_event(context.system.events_by_name.get(name), context)
+    result, process = trace_event(context.system.events_by_name.get(name), context)
     if process is not None:
         raise UnknownError(f"the event {name!r} is restricted to a process")
-    return found
+    return result
 
 
 def _delay(limit: perf.DelayConstraint, context: Exporting) -> ProjectObject:
@@ -144,8 +144,8 @@ def _requirement(requirement: perf.Requirement, context: Exporting) -> ProjectOb
     process = context.find("Process", requirement.process)
     match limit:
         case perf.TimeLimit(metric=metric, value=value, bound=bound):
-            bounds = (None, value) if bound is perf.Bound.UPPER else (value, None)
-            interval = _interval(*bounds, context, name)
+            lower, upper = (None, value) if bound is perf.Bound.UPPER else (value, None)
+            interval = _interval(lower, upper, context, name)
             if process is not None and metric in OF_PROCESS:
                 return ProjectObject(OF_PROCESS[metric], name=name, process=process, interval=interval)
             entry, leave = (context.trace_event("Function", requirement.runnable, event) for event in ("Entry", "Exit"))

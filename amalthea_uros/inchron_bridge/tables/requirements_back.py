@@ -29,13 +29,13 @@ _METRICS = {kind: metric for metric, kind in OF_PROCESS.items()}
 
 def extract_constraints(context: Importing, model: ProjectObject, events: EventsReader) -> perf.Constraints:
     """All limits that are understood."""
-    found: dict[str, list[Any]] = {field: [] for field in _FIELDS.values()}
+    result: dict[str, list[Any]] = {field: [] for field in _FIELDS.values()}
     for item in model["requirements"]:
         kept = context.whole(item, LIMIT, tuple(_FIELDS), origin=context.location(item))
         limits = [kept] if kept is not None else _limits(item, context, events)
         for limit in limits:
-            found[_FIELDS[type(limit)]].append(limit)
-    return perf.Constraints(**{field: tuple(limits) for field, limits in found.items()})
+            result[_FIELDS[type(limit)]].append(limit)
+    return perf.Constraints(**{field: tuple(limits) for field, limits in result.items()})
 
 
 def _limits(item: ProjectObject, context: Importing, events: EventsReader) -> list[Any]:

@@ -12,7 +12,7 @@ from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 
 
-class Column(NamedTuple):
+class RowColumn(NamedTuple):
     """The feature for a field, and the conversion of its value to a project and back; None is left out in both directions."""
 
     feature: str
@@ -23,11 +23,11 @@ class Column(NamedTuple):
 class Row:
     """A class of a system, the class of a project that has its meaning, and the fields that are kept in the comment."""
 
-    def __init__(self, item: type[Any], kind: str, /, kept: tuple[str, ...] = (), **columns: Column | str) -> None:
+    def __init__(self, item: type[Any], kind: str, /, kept: tuple[str, ...] = (), **columns: RowColumn | str) -> None:
         self.item = item
         self.kind = kind
         self.kept = kept
-        self.columns = {name: Column(each) if isinstance(each, str) else each for name, each in columns.items()}
+        self.columns = {name: RowColumn(each) if isinstance(each, str) else each for name, each in columns.items()}
         self._defaults = {field.name: default_value(field) for field in fields(item)}
 
     def build(self, source: Any, context: Exporting, **more: Any) -> ProjectObject:
@@ -74,23 +74,23 @@ def reference(kind: str) -> tuple[Callable[[Any, Exporting], Any], Callable[[Any
     )
 
 
-def refers(feature: str, kind: str) -> Column:
+def refers(feature: str, kind: str) -> RowColumn:
     """A column with one name."""
-    return Column(feature, *reference(kind))
+    return RowColumn(feature, *reference(kind))
 
 
-def refers_to_several(feature: str, kind: str) -> Column:
+def refers_to_several(feature: str, kind: str) -> RowColumn:
     """A column with several names."""
     build, extract = reference(kind)
 
     def names(targets: Any, context: Importing) -> Any:
-        found = tuple(extract(target, context) for target in targets)
-        return None if None in found else found
+        result = tuple(extract(target, context) for target in targets)
+        return None if None in result else result
 
-    return Column(feature, lambda names, context: [build(name, context) for name in names], names)
+    return RowColumn(feature, lambda names, context: [build(name, context) for name in names], names)
 
 
-def choice(feature: str, literals: dict[Any, str]) -> Column:
+def choice(feature: str, literals: dict[Any, str]) -> RowColumn:
     """A column with a literal of an enumeration."""
     back = {literal: value for value, literal in literals.items()}
-    return Column(feature, lambda value, _: literals[value], lambda literal, _: back.get(literal))
+    return RowColumn(feature, lambda value, _: literals[value], lambda literal, _: back.get(literal))

@@ -22,7 +22,6 @@ OF_TASK = (*OF_ISR, "Block", "Release", "Restart")
 OF_FUNCTION = ("Activate", "Entry", "Exit")
 OF_DATA = ("read", "write")
 
-#: The preemption of a task that a project does not tell from another one is kept.
 TASK = Row(perf.Task, "Process", activation_limit="activationLimit")
 ISR = Row(perf.Isr, "Process", ("category",))
 RUNNABLE = Row(perf.Runnable, "Function", ("is_overhead", "condition"), callback="callback", service="service")
@@ -79,18 +78,18 @@ def _build_modes(context: Exporting) -> None:
             )
             first = next((each for each in made["modes"] if each.name == label.initial), None)
             made["initialMode"] = first or made["modes"][0]
-            _note_initial(made, label, is_known=first is not None, context=context)
+            _keep_initial(made, label, is_known=first is not None, context=context)
             context.model.add("globalModeGroups", context.register("ModeGroup", label.name, made))
             note(made, mode=mode.name)
         else:
             number = whole_number(label.initial)
             made = ProjectObject("Counter", name=label.name, initialValue=number or 0)
-            _note_initial(made, label, is_known=number is not None, context=context)
+            _keep_initial(made, label, is_known=number is not None, context=context)
             context.model.add("globalCounters", context.register("Counter", label.name, made))
             note(made, mode=mode.name)
 
 
-def _note_initial(made: ProjectObject, label: perf.ModeLabel, *, is_known: bool, context: Exporting) -> None:
+def _keep_initial(made: ProjectObject, label: perf.ModeLabel, *, is_known: bool, context: Exporting) -> None:
     """A project always has an initial value; that it is unknown is not the same as the first one."""
     if not is_known:
         note(made, initial=label.initial)
@@ -100,7 +99,8 @@ def _note_initial(made: ProjectObject, label: perf.ModeLabel, *, is_known: bool,
 def build_graphs(context: Exporting) -> None:
     """Make what processes and functions do, and let stimuli activate the processes, in the order of the importer of INCHRON."""
     software = context.system.software
-    for process in (*software.isrs, *software.tasks):
+    processes: tuple[perf.Process, ...] = (*software.isrs, *software.tasks)
+    for process in processes:
         add_activations(process, context)
         if len(process.stimuli) > 1:
             note(context.need("Process", process.name, process.name), stimuli=list(process.stimuli))
@@ -134,15 +134,15 @@ def assign_owners(context: Exporting) -> None:
 
 def _component(system: ProjectObject | None, context: Exporting) -> ProjectObject:
     system = system or global_system(context)
-    for found in system["components"]:
-        return found  # type: ignore[no-any-return]
+    for result in system["components"]:
+        return result  # type: ignore[no-any-return]
     is_global = system is context.find("System", "__GLOBAL__")
     return system.add("components", ProjectObject("Component", name=system.name if is_global else f"{system.name}_Component"))
 
 
 def _owners(context: Exporting) -> dict[tuple[str, str], ProjectObject]:
     """The operating system of each function, variable and event that a process uses, by kind and name."""
-    found: dict[tuple[str, str], ProjectObject] = {}
+    result: dict[tuple[str, str], ProjectObject] = {}
     system = context.system
     for os in context.model["systems"]:
         below = {item.name for item in os.walk() if item.kind == "Process"}
@@ -152,12 +152,12 @@ def _owners(context: Exporting) -> dict[tuple[str, str], ProjectObject]:
             body = waiting.pop()
             for activity in walk(body):
                 for event in getattr(activity, "events", ()):
-                    found.setdefault(("Event", event), os)
+                    result.setdefault(("Event", event), os)
                 if isinstance(activity, LabelAccess | SenderReceiverAccess):
-                    found.setdefault(("DataObject", activity.label), os)
+                    result.setdefault(("DataObject", activity.label), os)
             for name in called_runnables(body):
                 if name not in seen and name in system.runnables:
                     seen.add(name)
-                    found.setdefault(("Function", name), os)
+                    result.setdefault(("Function", name), os)
                     waiting.append(system.runnables[name].activities)
-    return found
+    return result

@@ -91,19 +91,19 @@ def _report(process: ProjectObject, context: Importing) -> None:
 
 def _runnable(item: ProjectObject, context: Importing) -> perf.Runnable:
     activities = extract_graph(item["callGraph"], context)
-    found: perf.Runnable = RUNNABLE.extract(
+    result: perf.Runnable = RUNNABLE.extract(
         item, context, name=context.name_of("Function", item), activities=activities, origin=context.located(item)
     )
-    return found
+    return result
 
 
 def _label(item: ProjectObject, context: Importing) -> perf.Label:
     content = context.noted(item)
     size = None if "size" in content and content["size"] is None else size_of(item["size"])
-    found: perf.Label = LABEL.extract(
+    result: perf.Label = LABEL.extract(
         item, context, name=context.name_of("DataObject", item), size=size, origin=context.located(item)
     )
-    return found
+    return result
 
 
 def extract_semaphores(context: Importing, model: ProjectObject) -> tuple[Semaphore, ...]:
@@ -117,13 +117,13 @@ def extract_semaphores(context: Importing, model: ProjectObject) -> tuple[Semaph
 
 def extract_placements(context: Importing, model: ProjectObject) -> tuple[Placement, ...]:
     """The memories of variables."""
-    found = []
+    result = []
     for item in model.walk():
         if item.kind == "memory.DataObject" and item["memory"] is not None:
             label, memory = context.name_of("DataObject", item), context.name_of("Memory", item["memory"])
             if label is not None and memory is not None:
-                found.append(Placement(element=label, memory=memory))
-    return tuple(found)
+                result.append(Placement(element=label, memory=memory))
+    return tuple(result)
 
 
 def _modes(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import note_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.activities import next_entry
 from amalthea_uros.inchron_bridge.tables.conditions import build_condition
@@ -54,7 +54,7 @@ def _stimulus(stimulus: perf.Stimulus, context: Exporting, scenario: ProjectObje
         case perf.InterProcess() if name in triggered:
             made = ProjectObject("ActivationConnection", name=name)
             if stimulus.counter is not None:
-                note_whole(made, "counter", stimulus.counter)
+                keep_whole(made, "counter", stimulus.counter)
             context.model.add("connections", context.register("ActivationConnection", name, made))
             return made
         case perf.Single(time=time):
@@ -142,7 +142,7 @@ def _periodic(stimulus: perf.Periodic, context: Exporting) -> ProjectObject:
     )
     if lost:
         context.changed(stimulus, "a jitter of another distribution", "uniformly distributed within its bounds, or around 0")
-        note_whole(made, STIMULUS, stimulus)
+        keep_whole(made, STIMULUS, stimulus)
     return made
 
 
@@ -166,12 +166,12 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
         context.changed(
             stimulus, "a distance of another distribution", "uniformly distributed within its bounds, or around its mean"
         )
-        note_whole(made, STIMULUS, stimulus)
+        keep_whole(made, STIMULUS, stimulus)
     return made
 
 
 def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
-    """What stands for a stimulus that a project cannot have: its highest rate, or nothing if that is unknown."""
+    """A substitute for a stimulus that a project cannot have: its highest rate, or nothing if that is unknown."""
     span = context.iterations.get(stimulus.name)
     rate = _highest_rate(stimulus)
     if span is not None:
@@ -182,13 +182,13 @@ def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
             stimulus, "the iterations of an executor", "as activations between the shortest and the longest iteration"
         )
     elif rate is not None:
-        period, shortest = rate
-        made = _random(stimulus.name, period, context, "", distance=shortest)
+        period, distance = rate
+        made = _random(stimulus.name, period, context, "", distance=distance)
         context.changed(stimulus, type(stimulus).__name__, "as activations at the highest rate that lasts")
     else:
         made = _generator(LIST, stimulus.name, context)
         context.lost(stimulus, type(stimulus).__name__, "nothing is activated there; only amuros reads it, in a comment")
-    note_whole(made, STIMULUS, stimulus)
+    keep_whole(made, STIMULUS, stimulus)
     return made
 
 
@@ -228,8 +228,8 @@ def add_activations(process: Any, context: Exporting) -> None:
 def _sequence(graph: ProjectObject, stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
     """The sequence of the activations of a stimulus; within a branch if it has a condition."""
     for entry in graph["graphEntries"]:
-        found: ProjectObject = entry if entry.kind == "CallSequence" else entry["entries"][0]["graphEntries"][0]
-        return found
+        result: ProjectObject = entry if entry.kind == "CallSequence" else entry["entries"][0]["graphEntries"][0]
+        return result
     if stimulus.condition is None:
         return graph.add("graphEntries", next_entry("CallSequence", context))
     switch = next_entry("Switch", context)

@@ -1,4 +1,4 @@
-"""What activates the processes of a project."""
+"""Stimuli of the processes of a project."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class StimuliReader:
                 self.activate(process, name)
 
     def _scenarios(self) -> Iterator[ProjectObject]:
-        """The default scenario; all of them, if that is composed of others."""
+        """The default scenario; all of them, if that is a composite one."""
         chosen = self.model["defaultScenario"]
         for scenario in self.model["scenarios"]:
             if scenario.kind != "stimulation.StimulationScenario":
@@ -65,14 +65,14 @@ class StimuliReader:
         for condition, targets, counter in self.activations(graph) or [(None, [], None)]:
             name = self.context.name("Stimulus", holder, None if first else f"{holder.name}_2")
             first = False
-            found = self.stimulus(holder, name)
+            result = self.stimulus(holder, name)
             if condition is not None:
-                found = [replace(each, condition=condition) for each in found]
+                result = [replace(each, condition=condition) for each in result]
             if counter is not None and holder.kind == "ActivationConnection":
-                found = [replace(each, counter=each.counter or counter) for each in found]
-            self.stimuli += found
+                result = [replace(each, counter=each.counter or counter) for each in result]
+            self.stimuli += result
             for target in targets:
-                for each in found:
+                for each in result:
                     self.activate(target, each.name)
 
     def activate(self, process: ProjectObject, stimulus: str) -> None:
@@ -83,24 +83,24 @@ class StimuliReader:
         self, graph: ProjectObject | None
     ) -> list[tuple[Condition | None, list[ProjectObject], perf.Counter | None]]:
         """The processes that a call graph activates, by the condition under which it does."""
-        found = []
+        result: list[tuple[Condition | None, list[ProjectObject], perf.Counter | None]] = []
         for entry in graph["graphEntries"] if graph is not None else ():
             if entry.kind == "CallSequence":
-                found.append((None, *self.targets(entry)))
+                result.append((None, *self.targets(entry)))
             elif entry.kind == "Switch" and len(entry["entries"]) == 1 and entry["defaultEntry"] is None:
                 case = entry["entries"][0]
                 condition = None if case["negated"] else extract_condition(case["condition"], self.context)
                 for inner in case["graphEntries"]:
                     if inner.kind == "CallSequence":
-                        found.append((condition or Condition(()), *self.targets(inner)))
+                        result.append((condition or Condition(()), *self.targets(inner)))
                     else:
                         self.context.leave_out(inner, f"a {inner.kind} in what a generator activates")
             else:
                 # Whatever is in it may be activated each time.
                 self.context.leave_out(entry, f"a {entry.kind} in what a generator activates")
                 targets = [each["target"] for each in entry.walk() if each.kind == "ActivateProcess"]
-                found.append((Condition(()), [each for each in targets if each is not None], None))
-        return found
+                result.append((Condition(()), [each for each in targets if each is not None], None))
+        return result
 
     def targets(self, sequence: ProjectObject) -> tuple[list[ProjectObject], perf.Counter | None]:
         """The processes that a sequence activates, and every how often."""
@@ -129,15 +129,15 @@ class StimuliReader:
             counter = self.context.whole(item, "counter", (perf.Counter,))
             return [perf.InterProcess(**known, counter=counter)]
         reason = _obstacle(item)
-        found: list[Any] | None = None
+        result: list[Any] | None = None
         if reason is None and item.kind == GENERATOR:
-            found = self._random(item, known)
+            result = self._random(item, known)
         elif reason is None and item.kind in (LIST, INDUCED):
-            found = self._list(item, known)
-        if found is None:
+            result = self._list(item, known)
+        if result is None:
             self.context.leave_out(item, f"a {item.kind} {reason or 'with values that cannot be converted'}")
             return [perf.Custom(**known, description=f"a {item.kind} of the project, which is not understood")]
-        return found
+        return result
 
     def _random(self, item: ProjectObject, known: dict[str, Any]) -> list[Any] | None:
         period, shortest = time_of(item["period"]), time_of(item["minimumInterArrivalTime"])
@@ -169,15 +169,15 @@ class StimuliReader:
         if variation == "Uniform":
             jitter = Uniform(lower=low or 0, upper=high or 0)
         elif variation == "Normal":
-            bounds = (None, None) if not low and not high else (low, high)
-            jitter = Gauss(mean=0.0, deviation=float(sigma or 0), lower=bounds[0], upper=bounds[1])
+            limits = (None, None) if not low and not high else (low, high)
+            jitter = Gauss(mean=0.0, deviation=float(sigma or 0), lower=limits[0], upper=limits[1])
         return [perf.Periodic(**known, period=period, offset=offset or 0, jitter=jitter, min_distance=shortest or None)]
 
     def _list(self, item: ProjectObject, known: dict[str, Any]) -> list[Any] | None:
         times = [time_of(each) for each in item["entries"]]
         if any(time is None for time in times):
             return None
-        found = tuple(time for time in times if time is not None)
+        result = tuple(time for time in times if time is not None)
         if item.kind == LIST:
             name = known["name"]
             others = [
@@ -186,7 +186,7 @@ class StimuliReader:
                 if number
             ]
             return [
-                perf.Single(**{**known, "name": each}, time=time) for each, time in zip([name, *others], found, strict=False)
+                perf.Single(**{**known, "name": each}, time=time) for each, time in zip([name, *others], result, strict=False)
             ]
         driver = item["sourceGenerator"]
         if (
@@ -197,9 +197,9 @@ class StimuliReader:
         ):
             return None
         base = self._random(driver, {"name": known["name"]}) if _obstacle(driver) is None else None
-        if base is None or not isinstance(base[0], perf.Periodic) or base[0].jitter is not None or not found:
+        if base is None or not isinstance(base[0], perf.Periodic) or base[0].jitter is not None or not result:
             return None
-        return [perf.Synthetic(**known, period=base[0].period, times=found, offset=base[0].offset)]
+        return [perf.Synthetic(**known, period=base[0].period, times=result, offset=base[0].offset)]
 
 
 def _obstacle(generator: ProjectObject) -> str | None:
