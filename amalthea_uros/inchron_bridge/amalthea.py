@@ -123,13 +123,14 @@ def _add_ports(holder: ProjectObject, module: Any, ports: dict[Any, ProjectObjec
         role = {_INITIATOR: "initiator", _RESPONDER: "responder"}.get(port.port_type)
         if role is None or (not is_handler and role not in _roles(holder)):
             continue
-        made = ProjectObject(f"memory.{role.capitalize()}Port", name=port.name)
+        # The port of a core or memory is there already, and interconnects may refer to it.
+        made = ProjectObject(f"memory.{role.capitalize()}Port") if is_handler else holder[role]
+        made["name"] = port.name or role
         if role == "initiator" and port.priority:
             made["priority"] = port.priority
         if is_handler:
             holder.add(f"{role}s", made)
         else:
-            holder[role] = made
             # The importer takes the bits of AMALTHEA for bytes here.
             holder["bitWidth"] = ProjectObject("DataSize", value=port.bit_width or 0, unit="B")
         ports[port] = made
