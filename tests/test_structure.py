@@ -33,7 +33,7 @@ LINES = {
     "executors": 1882,
     "findings": 496,
     "inchron": 461,
-    "inchron_bridge": 2981,
+    "inchron_bridge": 3000,
     "judge": 561,
     "measure": 1110,
     "metamodel": 3280,

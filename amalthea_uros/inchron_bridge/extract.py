@@ -22,7 +22,7 @@ from amalthea_uros.inchron_bridge.tables.software_back import (
 from amalthea_uros.inchron_bridge.tables.stimuli_back import StimuliReader
 from amalthea_uros.perf.activities import Incomplete
 from amalthea_uros.perf.executors import Executor
-from amalthea_uros.perf.mapping import Mapping, Placement, TaskAllocation
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.network import Network, Transmission
 from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Scheduler
 from amalthea_uros.perf.software import Task
@@ -77,7 +77,7 @@ def _system(context: Importing, model: ProjectObject) -> System:
         mapping=Mapping(
             tasks=tuple(dispatch.tasks),
             isrs=tuple(dispatch.isrs),
-            placements=(*extract_placements(context, model), *context.list_of(model, "placements", (Placement,))),
+            placements=extract_placements(context, model),
         ),
         events=result,
         constraints=extract_constraints(context, model, events),

@@ -16,7 +16,9 @@ def test_a_project_is_written_and_analysed(tmp_path):
 
 
 def test_without_a_file_the_project_is_written_to_standard_output():
-    assert amuros("export", SAMPLE, "-q").stdout.startswith('<?xml version="1.0" encoding="UTF-8" standalone="no" ?>\n<root:Root')
+    assert amuros("export", SAMPLE, "-q").stdout.startswith(
+        '<?xml version="1.0" encoding="UTF-8" standalone="no" ?>\n<root:Root'
+    )
 
 
 def test_a_file_of_another_kind_is_refused(tmp_path):

@@ -116,14 +116,17 @@ def extract_semaphores(context: Importing, model: ProjectObject) -> tuple[Semaph
 
 
 def extract_placements(context: Importing, model: ProjectObject) -> tuple[Placement, ...]:
-    """The memories of variables."""
+    """The memories of variables; addresses, and the memories of other elements, are in the comment."""
+    kept = {each.element: each for each in context.list_of(model, "placements", (Placement,))}
     result = []
     for item in model.walk():
         if item.kind == "memory.DataObject" and item["memory"] is not None:
             label, memory = context.name_of("DataObject", item), context.name_of("Memory", item["memory"])
             if label is not None and memory is not None:
-                result.append(Placement(element=label, memory=memory))
-    return tuple(result)
+                stated = kept.pop(label, None)
+                is_same = stated is not None and stated.memory == memory
+                result.append(Placement(element=label, memory=memory, address=stated.address if stated and is_same else 0))
+    return (*result, *kept.values())
 
 
 def _modes(
