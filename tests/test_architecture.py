@@ -30,6 +30,8 @@ ROOMS = {
     "metamodel": BASE,
     "xmi": (*BASE, "metamodel"),
     "bridge": (*BASE, "metamodel", "perf"),
+    "inchron": (*BASE, "metamodel", "xmi"),
+    "inchron_bridge": (*BASE, "bridge", "inchron", "metamodel", "perf", "timing"),
     "difference": (*BASE, "metamodel"),
     "validate": (*BASE, "findings", "metamodel", "perf", "timing"),
     "judge": (*BASE, "perf", "timing"),
@@ -41,8 +43,9 @@ ROOMS["design"] = tuple(ROOMS)
 ROOMS["compare"] = tuple(ROOMS)
 INNER = tuple(ROOMS)
 ROOMS["services"] = INNER
+NOT_SHOWN = ("bridge", "inchron_bridge", "spec", "xmi")
 #: `report` shows the results of services; it neither reads files nor converts models.
-ROOMS["report"] = tuple(room for room in (*INNER, "services") if room not in ("bridge", "spec", "xmi"))
+ROOMS["report"] = tuple(room for room in (*INNER, "services") if room not in NOT_SHOWN)
 ROOMS["editor"] = (*INNER, "services", "report")
 ROOMS["cli"] = (*ROOMS["editor"], "editor")
 ROOMS["am"] = ("metamodel",)

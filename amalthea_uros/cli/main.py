@@ -48,6 +48,7 @@ _TASKS = {
         "diff": "Compare two models by meaning.",
         "fmt": "Rewrite models in canonical form.",
         "migrate": "Convert models to another AMALTHEA version.",
+        "export": "Write models as a project of INCHRON's chronSUITE.",
     },
     "Look up and set up": {
         "rules": "List the rules of check.",

@@ -22,6 +22,7 @@ FAMILIES = {
     "BLD": "Building a model",
     "GEN": "Generating and checking build options",
     "EXT": "Extracting the performance model",
+    "INC": "Writing and reading INCHRON projects",
     "ANA": "Analysing response times",
     "SIM": "Simulating systems",
     "CHN": "Analysing event chains",

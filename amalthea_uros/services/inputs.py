@@ -13,6 +13,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 
 if TYPE_CHECKING:
+    from amalthea_uros.inchron_bridge.extract import ProjectExtraction
     from amalthea_uros.metamodel.model import Model
     from amalthea_uros.perf.system import System
 
@@ -23,9 +24,9 @@ class ModelInput:
 
     Attributes
     ----------
-    model : the one that was read, or the one that was built from a description, whose objects know its lines
+    model : the one that was read, or the one that was built from a description or a project, whose objects know its lines
     findings : problems found while reading or building, also those that comments accept
-    system : the one that a description describes, None for AMALTHEA models
+    system : the one that a description or a project describes, None for AMALTHEA models
     """
 
     model: Model
@@ -58,6 +59,11 @@ def open_model(paths: Sequence[StrPath]) -> ModelInput:
 
         built = build(paths[0])
         return ModelInput(model=built.model, findings=built.assembly.findings, system=built.assembly.system)
+    if is_one_project(paths):
+        from amalthea_uros.bridge.build import build_model
+
+        project = open_project(Path(paths[0]))
+        return ModelInput(model=build_model(project.system), findings=project.findings, system=project.system)
     from amalthea_uros.xmi.load import load
 
     model = load(*paths)
@@ -83,3 +89,29 @@ def is_one_description(paths: Sequence[StrPath]) -> bool:
         return True
     refuse_descriptions(paths)
     return False
+
+
+def is_one_project(paths: Sequence[StrPath]) -> bool:
+    """Whether the only path is an INCHRON project.
+
+    Raises
+    ------
+    InvalidArgumentError : one of several is; a project is always a model of its own.
+    """
+    projects = [path for path in map(Path, paths) if path.suffix.lower() == ".iprx"]
+    if projects and len(paths) > 1:
+        raise InvalidArgumentError(f"{projects[0]} is an INCHRON project, which is not a part of another model; give it alone")
+    return bool(projects)
+
+
+def open_project(path: Path) -> ProjectExtraction:
+    """The system of an INCHRON project.
+
+    Raises
+    ------
+    ReadError : the file cannot be read, or is no project.
+    """
+    from amalthea_uros.inchron.read import read_project
+    from amalthea_uros.inchron_bridge.extract import extract_project
+
+    return extract_project(read_project(path))

@@ -13,7 +13,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.inputs import as_paths, is_one_description
+from amalthea_uros.services.inputs import as_paths, is_one_description, is_one_project, open_project
 from amalthea_uros.timing.activation.releases import sources
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Subject: TypeAlias = "StrPath | Iterable[StrPath] | Mapping[str, Any] | Model | System"
 
 _ACCEPTED = (
-    "the path of an app.yaml or .amxmi file, a list of paths, the text of an app.yaml, its content as a dict, a Model, "
+    "the path of an app.yaml, .amxmi or .iprx file, a list of paths, the text of an app.yaml, its content as a dict, a Model, "
     "or a System such as taskset() makes"
 )
 _NO_BUS = "only an app.yaml describes the messages on a CAN bus"
@@ -88,7 +88,10 @@ def open_system(subject: Subject, *, with_bus: bool = False) -> SystemInput:
 
         return _described(paths, paths, describe(paths[0]), with_bus)
     if with_bus:
-        raise InvalidArgumentError(f"{_NO_BUS}; AMALTHEA models do not")
+        raise InvalidArgumentError(f"{_NO_BUS}; models do not")
+    if model is None and is_one_project(paths):
+        project = open_project(paths[0])
+        return SystemInput(subject=paths, paths=paths, system=project.system, findings=project.findings)
     from amalthea_uros.bridge.extract import extract
 
     if model is None:

@@ -1,0 +1,1 @@
+"""Shared by all tables: values, comments, the state of one run."""

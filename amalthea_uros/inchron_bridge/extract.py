@@ -1,0 +1,121 @@
+"""An INCHRON project as a system; what is not understood becomes a finding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from amalthea_uros.diagnostics import Finding
+from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron.project import Project
+from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.orders import in_kept_order
+from amalthea_uros.inchron_bridge.tables.chains_back import EventsReader
+from amalthea_uros.inchron_bridge.tables.hardware_back import core_frequency, extract_hardware
+from amalthea_uros.inchron_bridge.tables.os_back import Dispatch, extract_systems, processes_of
+from amalthea_uros.inchron_bridge.tables.requirements_back import extract_constraints
+from amalthea_uros.inchron_bridge.tables.software_back import (
+    extract_placements,
+    extract_semaphores,
+    extract_software,
+    name_software,
+)
+from amalthea_uros.inchron_bridge.tables.stimuli_back import StimuliReader
+from amalthea_uros.perf.activities import Incomplete
+from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.network import Network, Transmission
+from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Scheduler
+from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.stimuli import ClockFunction, ClockSteps, Custom, Stimuli
+from amalthea_uros.perf.system import System
+
+#: Parts of a model that say nothing about the times of what is understood.
+_OTHERS = ("busPeripherals", "fmi", "peripheralPortConnections", "spinlocks", "metrics", "typeDefinitions")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProjectExtraction:
+    """The system of a project, and what could not be extracted."""
+
+    system: System
+    findings: tuple[Finding, ...]
+
+
+def extract_project(project: Project) -> ProjectExtraction:
+    """The system that a project describes."""
+    context = Importing(project.model, project)
+    system = _system(context, project.model)
+    return ProjectExtraction(system=system, findings=(*project.findings, *context.finish()))
+
+
+def _system(context: Importing, model: ProjectObject) -> System:
+    for feature in _OTHERS:
+        for item in model[feature] if isinstance(model[feature], list) else [model[feature]] if model[feature] else []:
+            context.leave_out(item)
+    hardware = extract_hardware(context, model)
+    frequencies = {core_frequency(core) for cpu in model["cpus"] for core in cpu["cores"]}
+    context.frequency = frequencies.pop() if len(frequencies) == 1 else None
+    name_software(context, model)
+    stimuli = StimuliReader(context, model)
+    stimuli.read()
+    for connection in model["connections"]:
+        if (name := context.name_of("Stimulus", connection)) is not None:
+            context.share("ActivationConnection", connection, name)
+    dispatch = extract_systems(context, model)
+    software = extract_software(context, model, stimuli.of_process)
+    events = EventsReader(context, model)
+    result = events.read()
+    system = System(
+        hardware=hardware,
+        os=Os(
+            systems=tuple(dispatch.systems),
+            overheads=context.list_of(model, "overheads", (Overhead,)),
+            semaphores=extract_semaphores(context, model),
+        ),
+        stimuli=Stimuli(stimuli=tuple(stimuli.stimuli), clocks=context.list_of(model, "clocks", (ClockFunction, ClockSteps))),
+        software=software,
+        mapping=Mapping(
+            tasks=tuple(dispatch.tasks),
+            isrs=tuple(dispatch.isrs),
+            placements=extract_placements(context, model),
+        ),
+        events=result,
+        constraints=extract_constraints(context, model, events),
+    )
+    return _with_unknown(in_kept_order(_with_middleware(system, context, model), context.noted(model)), dispatch)
+
+
+def _with_middleware(system: System, context: Importing, model: ProjectObject) -> System:
+    """The system with the executors and the network that comments describe."""
+    executors, transmissions = [], []
+    for process in processes_of(model):
+        origin = context.location(process)
+        executor = context.whole(process, "executor", (Executor,), sealed=False, origin=origin)
+        transmission = context.whole(process, "transmission", (Transmission,), sealed=False, origin=origin)
+        executors += [executor] if executor is not None else []
+        transmissions += [transmission] if transmission is not None else []
+    network = context.whole(model, "network", (Network,), sealed=False) or Network()
+    return replace(system, executors=tuple(executors), network=replace(network, transmissions=tuple(transmissions)))
+
+
+def _with_unknown(system: System, dispatch: Dispatch) -> System:
+    """The system with a task of unknown demand on all cores for each thing that executes something not understood.
+
+    Without it, response times of the others would not include what it takes of their cores.
+    """
+    for item in dispatch.unknown:
+        name = f"unknown_{item.kind.rpartition('.')[2]}_{item.name}"
+        cores = tuple(system.cores)
+        stimulus = Custom(name=name, description=f"{item.kind} is not understood")
+        task = Task(name=name, stimuli=(name,), activities=(Incomplete(reason=f"{item.kind} {item.name!r} is not understood"),))
+        scheduler = Scheduler(name=name, policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=cores)
+        system = replace(
+            system,
+            stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, stimulus)),
+            software=replace(system.software, tasks=(*system.software.tasks, task)),
+            os=replace(system.os, systems=(*system.os.systems, OperatingSystem(name=name, schedulers=(scheduler,)))),
+            mapping=replace(
+                system.mapping, tasks=(*system.mapping.tasks, TaskAllocation(task=name, scheduler=name, priority=2**31 - 1))
+            ),
+        )
+    return system

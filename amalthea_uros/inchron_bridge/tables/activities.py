@@ -1,0 +1,317 @@
+"""Activities of processes and functions: the entries of their call graphs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole, note
+from amalthea_uros.inchron_bridge.basics.exporting import Exporting
+from amalthea_uros.inchron_bridge.tables.conditions import build_condition, whole_number
+from amalthea_uros.inchron_bridge.tables.demand import of_every_core_type
+from amalthea_uros.inchron_bridge.tables.distributions import build_demand
+from amalthea_uros.inchron_bridge.tables.rows import Row, choice, refers, refers_to_several
+from amalthea_uros.perf import activities as perf
+from amalthea_uros.perf.stimuli import Counter
+
+#: What an activity is called that comes as a whole from a comment.
+ACTIVITY = "activity"
+#: And a group, in the comment of the first of the entries that stand for it.
+GROUP = "group"
+
+_ACCESSES = {perf.AccessKind.READ: "Read", perf.AccessKind.WRITE: "Write"}
+_DATA_ACCESS = "memory.ExplicitDataAccess"
+
+
+def data_access(label: str, kind: perf.AccessKind, context: Exporting) -> ProjectObject:
+    """An access to a variable."""
+    target = context.need("DataObject", label, context.holder)
+    rate = ProjectObject("DataRate", value=0)
+    return ProjectObject(_DATA_ACCESS, accessType=_ACCESSES[kind], dataObject=target, bandwidth=rate)
+
+
+#: Activities that are one item of a call sequence each, with the beginnings of their names.
+ROWS: dict[type[Any], tuple[str, Row]] = {
+    row.item: (prefix, row)
+    for prefix, row in {
+        "Call_{runnable}": Row(perf.Call, "FunctionCall", ("times",), runnable=refers("function", "Function")),
+        "InterProcessTrigger_{stimulus}": Row(
+            perf.Trigger, "ActivationItem", stimulus=refers("connection", "ActivationConnection")
+        ),
+        "SemaphoreAccess_{semaphore}": Row(
+            perf.SemaphoreAccess,
+            "SemaphoreAccess",
+            ("waiting",),
+            semaphore=refers("semaphore", "Semaphore"),
+            operation=choice(
+                "type",
+                {
+                    perf.SemaphoreOperation.REQUEST: "Request",
+                    perf.SemaphoreOperation.EXCLUSIVE: "Exclusive",
+                    perf.SemaphoreOperation.RELEASE: "Release",
+                },
+            ),
+        ),
+        "SchedulePoint": Row(perf.SchedulePoint, "SchedulePoint"),
+    }.items()
+}
+_SERVER = refers("serverFunction", "Function")
+#: Server calls have a class for each kind.
+SERVER_CALLS: dict[perf.ServerCallKind, tuple[str, Row]] = {
+    perf.ServerCallKind.SYNCHRONOUS: (
+        "SyncServerCall_{runnable}",
+        Row(
+            perf.ServerCall,
+            "SynchronousServerCall",
+            ("waits", "waiting"),
+            runnable=_SERVER,
+            waiting=choice("waitingBehavior", {perf.Waiting.ACTIVE: "Active", perf.Waiting.PASSIVE: "Passive"}),
+        ),
+    ),
+    perf.ServerCallKind.ASYNCHRONOUS: (
+        "AsyncServerCall_{runnable}",
+        Row(
+            perf.ServerCall,
+            "AsynchronousServerCall",
+            ("waits", "waiting"),
+            runnable=_SERVER,
+            result=refers("resultFunction", "Function"),
+        ),
+    ),
+    perf.ServerCallKind.GET_RESULT: (
+        "GetResultServerCall_{runnable}",
+        Row(
+            perf.ServerCall,
+            "GetResultServerCall",
+            ("waiting",),
+            runnable=_SERVER,
+            waiting=choice("blockingType", {perf.Waiting.ACTIVE: "ActiveWait", perf.Waiting.PASSIVE: "PassiveWait"}),
+        ),
+    ),
+}
+_NOTIFIED = refers_to_several("notifiedFunctions", "Function")
+
+
+def build_graph(activities: tuple[perf.Activity, ...], context: Exporting) -> ProjectObject:
+    """The call graph of a process or a function."""
+    if not activities:
+        return ProjectObject("CallGraph")
+    context.entry = 0
+    return ProjectObject("CallGraph", graphEntries=_Graph(context).entries(activities))
+
+
+def next_entry(kind: str, context: Exporting) -> ProjectObject:
+    """An entry with the next number in its name."""
+    made = ProjectObject(kind, name=f"{kind}_{context.entry}")
+    context.entry += 1
+    return made
+
+
+class _Graph:
+    """One call graph.
+
+    Attributes
+    ----------
+    number : of the next item of a call sequence
+    """
+
+    def __init__(self, context: Exporting) -> None:
+        self.context = context
+        self.number = 0
+
+    def entries(self, activities: tuple[perf.Activity, ...]) -> list[ProjectObject]:
+        """The entries for activities; sequences are cut where there is a branch, a loop or a group."""
+        result = [next_entry("CallSequence", self.context)]
+        for activity in activities:
+            match activity:
+                case perf.Group():
+                    result += self.group(activity)
+                case perf.Switch():
+                    result.append(self.switch(activity))
+                case perf.ProbabilitySwitch():
+                    result.append(self.probability_switch(activity))
+                case perf.Loop():
+                    result.append(self.loop(activity))
+                case _:
+                    for item in self.items(activity):
+                        result[-1].add("calls", item)
+                    continue
+            result.append(next_entry("CallSequence", self.context))
+        return [entry for entry in result if entry.kind != "CallSequence" or entry["calls"]]
+
+    def group(self, group: perf.Group) -> list[ProjectObject]:
+        """A sequence with the name of the group; others within it stand beside it, as sequences do not contain any."""
+        context = self.context
+        if not group.ordered:
+            context.lost(group, "a group without an order", "its activities are in the order in which they are stated")
+        is_simple = not any(isinstance(each, perf.WITH_PARTS) for each in group.activities)
+        if is_simple:
+            result = [ProjectObject("CallSequence", name=group.name)]
+            for activity in group.activities:
+                for item in self.items(activity):
+                    result[0].add("calls", item)
+        else:
+            result = self.entries(group.activities) or [next_entry("CallSequence", context)]
+            context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
+        if not group.interruptible:
+            _enclose(result, group.name, context)
+        if not (is_simple and group.ordered and group.name):
+            keep_whole(result[0], GROUP, group)
+            note(result[0], span=len(result))
+        return result
+
+    def switch(self, switch: perf.Switch) -> ProjectObject:
+        """The first case whose condition holds."""
+        made = next_entry("Switch", self.context)
+        made["evaluateConditionsOnEntry"] = True
+        for number, case in enumerate(switch.cases):
+            condition = build_condition(case.condition, self.context, case)
+            entry = ProjectObject("SwitchEntry", name=f"SwitchEntry_{number}", condition=condition)
+            if case.name:
+                note(entry, name=case.name)
+            made.add("entries", entry)
+            entry["graphEntries"] = self.entries(case.activities)
+        if switch.default is not None:
+            made["defaultEntry"] = ProjectObject("SwitchDefault", graphEntries=self.entries(switch.default))
+        return made
+
+    def probability_switch(self, switch: perf.ProbabilitySwitch) -> ProjectObject:
+        """One of the branches, by chance."""
+        made = next_entry("ProbabilitySwitch", self.context)
+        for number, branch in enumerate(switch.branches):
+            name = f"ProbabilitySwitchEntry_{number}"
+            entry = ProjectObject("ProbabilitySwitchEntry", name=name, probability=float(branch.weight))
+            made.add("entries", entry)
+            entry["graphEntries"] = self.entries(branch.activities)
+        return made
+
+    def loop(self, loop: perf.Loop) -> ProjectObject:
+        """Repeated while the condition holds."""
+        made = ProjectObject("WhileLoop", name="WhileLoop")
+        if loop.condition is not None:
+            made["condition"] = build_condition(loop.condition, self.context, loop)
+        entries = self.entries(loop.activities)
+        made["graphEntries"] = entries or [next_entry("CallSequence", self.context)]
+        return made
+
+    def items(self, activity: perf.Activity) -> Iterator[ProjectObject]:
+        """The items of a call sequence for an activity."""
+        for item in self._items(activity):
+            counter = getattr(activity, "counter", None)
+            if counter is not None:
+                item["period"], item["offset"] = max(1, counter.prescaler), counter.offset
+                if counter != Counter(prescaler=max(1, counter.prescaler), offset=counter.offset):
+                    keep_whole(item, "counter", counter)
+            yield item
+
+    def named(self, pattern: str, activity: perf.Activity) -> str:
+        """The name of the next item."""
+        name = pattern.format(
+            **{
+                name: getattr(activity, name)
+                for name in ("runnable", "stimulus", "semaphore", "label")
+                if hasattr(activity, name)
+            }
+        )
+        self.number += 1
+        return f"{name}_{self.number - 1}"
+
+    def _items(self, activity: perf.Activity) -> Iterator[ProjectObject]:
+        context = self.context
+        if type(activity) in ROWS:
+            pattern, row = ROWS[type(activity)]
+            yield row.build(activity, context, name=self.named(pattern, activity))
+            return
+        match activity:
+            case perf.Execute(demand=demand):
+                distribution, is_exact = of_every_core_type(demand, context)
+                made = build_demand(distribution, context, activity)
+                item = ProjectObject("ResourceConsumption", name=self.named("Tick", activity), timeDistribution=made)
+                if not is_exact:
+                    keep_whole(item, ACTIVITY, activity)
+                yield item
+            case perf.LabelAccess(label=label, kind=kind):
+                item = ProjectObject("ResourceConsumption", name=self.named("LabelAccess_{label}", activity))
+                item.add("dataAccess", data_access(label, kind, context))
+                context.keep(item, activity, "communication", "protection", "times")
+                yield item
+            case perf.ServerCall(kind=call):
+                pattern, row = SERVER_CALLS[call]
+                more = {"blockingType": "NonBlocking"} if call is perf.ServerCallKind.GET_RESULT and not activity.waits else {}
+                item = row.build(activity, context, name=self.named(pattern, activity), **more)
+                if activity.waiting is None:
+                    note(item, waiting=None)  # a project always says how a client waits
+                yield item
+            case perf.SenderReceiverAccess():
+                yield self._communication(activity)
+            case perf.SetEvent(events=events) | perf.ClearEvent(events=events) | perf.WaitEvent(events=events):
+                yield from self._events(activity, events)
+            case perf.ModeAccess():
+                yield from self._mode(activity)
+            case _:
+                yield self._whole(activity)
+
+    def _communication(self, activity: perf.SenderReceiverAccess) -> ProjectObject:
+        is_read = activity.kind is perf.AccessKind.READ
+        kind = "VariableReadAccess" if is_read else "VariableWriteAccess"
+        item = ProjectObject(kind, name=self.named(kind + "_{label}", activity))
+        item["dataAccess"] = data_access(activity.label, activity.kind, self.context)
+        if activity.notifies and not is_read:
+            item["notifiedFunctions"] = _NOTIFIED.build(activity.notifies, self.context)
+        self.context.keep(item, activity, "buffered")
+        return item
+
+    def _events(self, activity: Any, events: tuple[str, ...]) -> Iterator[ProjectObject]:
+        kind = "WaitEvent" if isinstance(activity, perf.WaitEvent) else "SetEvent"
+        if isinstance(activity, perf.WaitEvent) and len(events) > 1 and not activity.all_of_them:
+            yield self._whole(activity)
+            return
+        for number, event in enumerate(events):
+            item = ProjectObject(kind, name=kind, event=self.context.need("Event", event, self.context.holder))
+            if isinstance(activity, perf.ClearEvent):
+                item["reset"] = True
+            part = replace(activity, events=(event,))
+            if isinstance(activity, perf.SetEvent):
+                self.context.keep(item, part, "process")
+            elif isinstance(activity, perf.WaitEvent):
+                self.context.keep(item, part, "waiting")
+            if number:
+                self.context.changed(activity, f"a {type(activity).__name__} with several events", "as one for each event")
+            yield item
+
+    def _mode(self, activity: perf.ModeAccess) -> Iterator[ProjectObject]:
+        context, label = self.context, activity.label
+        group, counter = context.find("ModeGroup", label), context.find("Counter", label)
+        if group is not None and activity.operation is perf.ModeOperation.SET:
+            mode = next((mode for mode in group["modes"] if mode.name == activity.value), None)
+            if mode is not None:
+                yield ProjectObject("ModeSwitchPoint", name=self.named("EnumModeLabelAccess", activity), mode=mode)
+                return
+        kind = {"set": "Set", "increment": "Increment", "decrement": "Decrement"}.get(activity.operation)
+        value = whole_number(activity.value) if kind == "Set" else activity.step
+        if counter is not None and kind and value is not None:
+            name = self.named("NumericModeLabelAccess", activity)
+            yield ProjectObject("CounterModification", name=name, type=kind, counter=counter, value=value)
+            return
+        yield self._whole(activity)
+
+    def _whole(self, activity: perf.Activity) -> ProjectObject:
+        """An item that only says that there is something; it takes no time there."""
+        kind = type(activity).__name__
+        item = ProjectObject("ResourceConsumption", name=kind)
+        keep_whole(item, ACTIVITY, activity)
+        self.context.lost(activity, kind)
+        return item
+
+
+def _enclose(entries: list[ProjectObject], name: str, context: Exporting) -> None:
+    """Suspend interrupts before the entries and resume them after; branches need sequences of their own for that."""
+    for place, kind in ((0, "Suspend"), (-1, "Resume")):
+        if entries[place].kind != "CallSequence":
+            entries.insert(0 if place == 0 else len(entries), next_entry("CallSequence", context))
+        item = ProjectObject(f"{kind}AllInterrupts", name=f"Implicit{kind}_{name}")
+        item.owner = entries[place]
+        calls = entries[place].values.setdefault("calls", [])
+        calls.insert(0 if place == 0 else len(calls), item)

@@ -1,0 +1,117 @@
+"""The requirements of a project as limits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time_of
+from amalthea_uros.inchron_bridge.tables.chains_back import EventsReader
+from amalthea_uros.inchron_bridge.tables.requirements import LIMIT, OF_PROCESS
+from amalthea_uros.perf import constraints as perf
+from amalthea_uros.perf.constraints import DataGroup
+
+_FIELDS: dict[type[Any], str] = {
+    perf.LatencyConstraint: "constraints",
+    perf.DelayConstraint: "constraints",
+    perf.RepetitionConstraint: "constraints",
+    perf.EventSynchronization: "constraints",
+    perf.ChainSynchronization: "constraints",
+    perf.DataAgeConstraint: "data_ages",
+    perf.OrderConstraint: "orders",
+    perf.Requirement: "requirements",
+    DataGroup: "data_groups",
+}
+_METRICS = {kind: metric for metric, kind in OF_PROCESS.items()}
+
+
+def extract_constraints(context: Importing, model: ProjectObject, events: EventsReader) -> perf.Constraints:
+    """All limits that are understood."""
+    result: dict[str, list[Any]] = {field: [] for field in _FIELDS.values()}
+    for item in model["requirements"]:
+        kept = context.whole(item, LIMIT, tuple(_FIELDS), origin=context.location(item))
+        limits = [kept] if kept is not None else _limits(item, context, events)
+        for limit in limits:
+            result[_FIELDS[type(limit)]].append(limit)
+    return perf.Constraints(**{field: tuple(limits) for field, limits in result.items()})
+
+
+def _limits(item: ProjectObject, context: Importing, events: EventsReader) -> list[Any]:
+    """The limits of a requirement; none, with a finding, if it is not understood."""
+    if not item["evaluate"]:
+        return []
+    try:
+        return list(_understood(item, context, events))
+    except UnknownError as error:
+        context.note("INC006", f"the requirement {item.name!r} ({item.kind}) is left out: {error}", item)
+        return []
+
+
+def _understood(item: ProjectObject, context: Importing, events: EventsReader) -> list[Any]:
+    origin = context.location(item)
+    match item.kind:
+        case "requirement.EventChainTimingRequirement":
+            lower, upper = _interval(item)
+            return [
+                perf.LatencyConstraint(
+                    name=context.name("Constraint", item),
+                    chain=_chain(item, events),
+                    kind=_kind(item),
+                    minimum=lower or None,
+                    maximum=upper,
+                    origin=origin,
+                )
+            ]
+        case "requirement.PeriodicEventRequirement":
+            lower, upper = _interval(item)
+            event = events.event(item["event"], None, item.name or "event")
+            name = context.name("Constraint", item)
+            return [perf.RepetitionConstraint(name=name, event=event, lower=lower or None, upper=upper, origin=origin)]
+        case kind if kind in _METRICS:
+            process = context.name_of("Process", item["process"])
+            if process is None:
+                raise UnknownError("its process is not understood")
+            lower, upper = _interval(item)
+            bounds = [(lower or None, perf.Bound.LOWER), (upper, perf.Bound.UPPER)]
+            return [
+                perf.Requirement(
+                    name=item.name,
+                    process=process,
+                    limit=perf.TimeLimit(metric=_METRICS[kind], value=value, bound=bound),
+                    origin=origin,
+                )
+                for value, bound in bounds
+                if value is not None
+            ]
+    raise UnknownError("there is no limit with that meaning")
+
+
+def _interval(item: ProjectObject) -> tuple[int | None, int | None]:
+    if item["successIfOutsideOfInterval"]:
+        raise UnknownError("it demands a time outside an interval")
+    interval = item["interval"]
+    if not interval["upperLimitIncluded"] or not interval["lowerLimitIncluded"]:
+        raise UnknownError("its interval does not include its ends")
+    lower, upper = time_of(interval["lowerLimit"]), time_of(interval["upperLimit"])
+    if lower is None or upper is None:
+        raise UnknownError("its interval cannot be converted")
+    return lower, None if upper >= NO_LIMIT else upper
+
+
+def _chain(item: ProjectObject, events: EventsReader) -> str:
+    graph = item["eventChain"]
+    if graph not in events.chains:
+        raise UnknownError("its event chain is not understood")
+    ends = [node["first"] for node in graph["terminalNodes"]]
+    if item["start"] != [graph["initialNode"]["first"]] or item["end"] != ends or item["instanceOffset"]:
+        raise UnknownError("it is about a part of its event chain")
+    return events.chains[graph]
+
+
+def _kind(item: ProjectObject) -> perf.LatencyKind:
+    kinds = {"FirstFirst": perf.LatencyKind.REACTION, "FirstLast": perf.LatencyKind.AGE}
+    if item["strategy"] not in kinds:
+        raise UnknownError(f"its strategy {item['strategy']} is not understood")
+    return kinds[item["strategy"]]

@@ -1,0 +1,60 @@
+"""`amuros export`, also as an importer of chronSUITE."""
+
+from command import amuros
+from support import ROOT
+
+SAMPLE = ROOT / "samples" / "bodas-test-hardware.yaml"
+
+
+def test_a_project_is_written_and_analysed(tmp_path):
+    target = tmp_path / "project.iprx"
+    run = amuros("export", SAMPLE, "-o", target)
+    assert run.returncode == 0
+    assert "INC004 warning" in run.stderr
+    assert amuros("analyze", target).stdout == amuros("analyze", SAMPLE).stdout
+    assert amuros("diff", SAMPLE, target).stdout == "no differences in meaning\n"
+
+
+def test_without_a_file_the_project_is_written_to_standard_output():
+    assert amuros("export", SAMPLE, "-q").stdout.startswith(
+        '<?xml version="1.0" encoding="UTF-8" standalone="no" ?>\n<root:Root'
+    )
+
+
+def test_a_file_of_another_kind_is_refused(tmp_path):
+    run = amuros("export", SAMPLE, "-o", tmp_path / "project.txt")
+    assert run.returncode == 2
+    assert "neither an INCHRON project (.iprx) nor an AMALTHEA model (.amxmi)" in run.stderr
+
+
+def test_a_project_is_not_a_part_of_another_model(tmp_path):
+    target = tmp_path / "project.iprx"
+    amuros("export", SAMPLE, "-o", target)
+    run = amuros("analyze", target, ROOT / "samples" / "executor.amxmi")
+    assert run.returncode == 2
+    assert "give it alone" in run.stderr
+
+
+def test_the_form_of_an_importer(tmp_path):
+    version = amuros("export", "--importer", "--version")
+    assert version.stdout.splitlines()[1:] == ["version: 3.5.0", "capabilities: +multi"]
+    target = tmp_path / "project.iprx"
+    run = amuros("export", "--importer", "-o", target, SAMPLE)
+    assert (run.returncode, run.stdout) == (0, "")
+    assert all(line.startswith("[amuros] ") for line in run.stderr.splitlines())
+    assert target.exists()
+
+
+def test_an_importer_ends_with_the_codes_of_am2inc(tmp_path):
+    assert amuros("export", "--importer").returncode == 1
+    target = tmp_path / "project.iprx"
+    run = amuros("export", "--importer", "-o", target, tmp_path / "missing.amxmi")
+    assert run.returncode == 2
+    assert run.stderr.startswith("[amuros] Error: ")
+    assert not target.exists()
+
+
+def test_ids_can_depend_on_a_text_or_on_the_files(tmp_path):
+    texts = [amuros("export", SAMPLE, *more).stdout for more in ([], ["--stable-from-value", "v"], ["--stable-from-hash"])]
+    assert len(set(texts)) == 3
+    assert amuros("export", SAMPLE, "--stable-from-value", "v").stdout == texts[1]

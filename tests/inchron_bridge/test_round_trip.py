@@ -1,0 +1,107 @@
+"""What is written to a project and read again is the same system; what somebody changed in between is not covered by comments."""
+
+import random
+from contextlib import suppress
+
+import pytest
+from support import ROOT, SHARED
+
+from amalthea_uros.errors import AmurosError
+from amalthea_uros.services.analyze import analyze_files
+from amalthea_uros.services.export import export
+from amalthea_uros.services.subject import open_system
+
+SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
+CONSTRUCTS = sorted(SHARED.glob("vectors/constructs*/*.amxmi"))
+
+
+@pytest.mark.parametrize("path", [*SAMPLES, *CONSTRUCTS], ids=lambda path: path.stem)
+def test_a_project_means_the_same_as_what_it_was_made_of(path, tmp_path):
+    first, again = tmp_path / "first.iprx", tmp_path / "again.iprx"
+    text = export(path, first).text
+    opened = open_system(first)
+    assert opened.system == open_system(path).system
+    assert [finding.rule for finding in opened.findings] == []
+    # A model spells units in its own way, such as 0 ms; a project that is exported again has those of its values.
+    assert path.suffix == ".amxmi" or export(first, again).text == text
+
+
+def test_the_analysis_of_a_project_has_the_results_of_the_description(tmp_path):
+    sample = ROOT / "samples" / "drive-and-lift.yaml"
+    export(sample, tmp_path / "project.iprx")
+    given, read = (analyze_files(path).analysis for path in (sample, tmp_path / "project.iprx"))
+    assert [(each.name, each.response) for each in read.processes] == [(each.name, each.response) for each in given.processes]
+    assert [(each.name, each.values) for each in read.chains] == [(each.name, each.values) for each in given.chains]
+
+
+def test_a_project_becomes_an_amalthea_model(tmp_path):
+    sample = ROOT / "samples" / "bodas-test-advanced.yaml"
+    export(sample, tmp_path / "project.iprx")
+    export(tmp_path / "project.iprx", tmp_path / "model.amxmi")
+    assert open_system(tmp_path / "model.amxmi").system == open_system(sample).system
+
+
+#: Two tasks on a core at 1 MHz, 3 and 2 ms long, and a chain through the label that both access.
+DESCRIPTION = """\
+amuros: 1
+name: small
+hardware: {platform: generic, cores: [{name: Core, frequency: 1 MHz}]}
+tasks:
+  - {name: First, period: 10 ms, priority: 2, execution_time: {min: 1 ms, max: 3 ms}, writes: [speed]}
+  - {name: Second, period: 20 ms, priority: 1, execution_time: 2 ms, reads: [speed]}
+requirements:
+  - {process: Second, response_time: 8 ms}
+"""
+
+
+@pytest.fixture
+def project(tmp_path):
+    """The project of the description, as a file to change."""
+    (tmp_path / "app.yaml").write_text(DESCRIPTION)
+    path = tmp_path / "project.iprx"
+    export(tmp_path / "app.yaml", path)
+    return path
+
+
+def response_of(path, name):
+    response = next(each.response for each in analyze_files(path).analysis.processes if each.name == name)
+    return None if response is None else response.worst
+
+
+def test_times_that_somebody_changed_are_those_of_the_project(project):
+    # Second waits for First, which takes 3 ms, and takes 2 ms itself.
+    assert response_of(project, "Second") == 5 * 10**9
+    project.write_text(project.read_text().replace('value="3000"', 'value="4000"'))
+    assert response_of(project, "Second") == 6 * 10**9
+
+
+def test_a_limit_that_somebody_changed_is_that_of_the_project(project):
+    project.write_text(project.read_text().replace('<upperLimit value="8" unit="ms"/>', '<upperLimit value="4" unit="ms"/>'))
+    limits = open_system(project).system.constraints.requirements
+    assert [each.limit.value for each in limits] == [4 * 10**9]
+
+
+def test_hardware_that_somebody_changed_is_that_of_the_project(project):
+    project.write_text(project.read_text().replace('<frequency value="1"/>', '<frequency value="2"/>'))
+    opened = open_system(project)
+    assert [clock.frequency for clock in opened.system.hardware.clocks] == [2_000_000]
+    assert [finding.rule for finding in opened.findings] == ["INC008"]
+    assert response_of(project, "Second") == 5 * 10**9 // 2
+
+
+def test_a_process_that_is_not_understood_makes_response_times_unknown(project):
+    text = project.read_text()
+    other = '<systems xsi:type="model:ThreadXSystem" intrinsicId="_x" name="Other"/>'
+    project.write_text(text.replace("<systems ", f"{other}\n    <systems ", 1))
+    assert response_of(project, "Second") is None
+    assert "INC006" in [finding.rule for finding in open_system(project).findings]
+
+
+def test_damaged_projects_end_with_findings(project):
+    chance, text = random.Random(1), export(SAMPLES[0], project).text
+    for _ in range(60):
+        place, length = chance.randrange(len(text)), chance.choice([0, 1, 3, 30])
+        inserted = chance.choice(["", "x", '"', "<", "0", "-", "99999999999", " ", text[place : place + 40]])
+        project.write_text(text[:place] + inserted + text[place + length :])
+        with suppress(AmurosError):
+            open_system(project)
