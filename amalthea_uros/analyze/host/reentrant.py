@@ -47,7 +47,9 @@ def _latency(index: int, chains: Sequence[ReentrantChain], threads: int) -> Time
     others = [other for number, other in enumerate(chains) if number != index]
     before = chain.total - chain.last
     while before + chain.last <= chain.period:
-        reached = chain.total - chain.last - (-sum(_workload(other, before) for other in others) // threads)
+        # What is released in the instant in which the last callback could start still counts.
+        interference = sum(_workload(other, before + 1) for other in others)
+        reached = chain.total - chain.last - (-interference // threads)
         if reached <= before:
             return before + chain.last
         before = reached
