@@ -15,6 +15,10 @@ from amalthea_uros.perf.network import Span
 from amalthea_uros.units import Time
 
 
+#: The kind of the custom events that stand for callbacks of the host in chains.
+HOST_EVENT = "callback of the host"
+
+
 class RosRelease(StrEnum):
     """A distribution of ROS 2, in the order of release; the values are those of files."""
 

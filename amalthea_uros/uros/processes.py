@@ -85,7 +85,7 @@ def add_processes(context: AssemblyContext, options: Sequence[Option], database:
     add_background_tasks(context)
     add_overheads(context)
     check_sleeps(description, notes)
-    if not context.processes and not notes.has_errors:
+    if not context.processes and description.host is None and not notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
         notes.error("APP009", message, description.location(), advice)

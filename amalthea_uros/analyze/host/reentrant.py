@@ -20,7 +20,7 @@ SOURCE = "Jiang et al. 2022"
 
 @dataclass(frozen=True, slots=True)
 class ReentrantChain:
-    """A chain that begins with strictly periodic releases.
+    """A chain of which two releases are a period apart at least.
 
     Attributes
     ----------
