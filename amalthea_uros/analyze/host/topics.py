@@ -17,7 +17,7 @@ from amalthea_uros.units import Time
 
 def delayed(events: EventModel, late: Time) -> EventModel:
     """Events that are delayed by a time that varies by so much."""
-    if isinstance(events, PeriodicEvents) and not events.min_interarrival:
+    if isinstance(events, PeriodicEvents) and (late or not events.min_interarrival):
         return PeriodicEvents(events.period, events.jitter + late)
     return Delayed(events, late) if late else events
 
