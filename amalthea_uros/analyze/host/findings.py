@@ -22,15 +22,15 @@ def note_host(host: HostResults, notes: AnalysisNotes) -> None:
     releases = host.releases
     for executor, result in zip(releases.topics.host.executors, host.executors, strict=True):
         if result.reason:
-            notes.warning("EXE020", f"the response times in {result.name!r} of the host have no bound: {result.reason}", executor)
+            notes.warning("HST001", f"the response times in {result.name!r} of the host have no bound: {result.reason}", executor)
         for callback in executor.callbacks:
             lost = result.handles[callback.name].lost
             if lost is not None:
-                notes.warning("EXE021", f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}", callback)
+                notes.warning("HST002", f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}", callback)
     for transmission in handed_over(host):
         try:
             difference = violated(transmission, host)
         except UnknownError:
             continue  # the executor has a finding, and the chain as well
         if difference:
-            notes.error("EXE022", difference, transmission)
+            notes.error("HST003", difference, transmission)

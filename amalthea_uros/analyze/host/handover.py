@@ -1,7 +1,7 @@
 """Whether the messages of the host are what the description of a controller states of them.
 
 A subscription on a controller states how often messages come, and with which jitter. If callbacks of the host publish its topic, that
-must hold for what they publish: the events n apart are at least (n - 1) T - J apart for the stated T and J.
+must hold for what they publish: the same interval, and no more jitter on the wire than the stated one and that of the agent.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ def violated(transmission: Transmission, host: HostResults) -> str:
     """
     releases, topic = host.releases, plain_topic(transmission.topic)
     topics = releases.topics
-    sent = aggregated(tuple(releases.published(each) for each in topics.publishers(topic)))
+    events = [releases.published(each) for each in topics.publishers(topic)]
+    # The agent sends back what the controller publishes, too.
+    events += [topics.from_controller(each) for each in topics.transmissions(topic, Direction.TO_AGENT)]
+    sent = aggregated(tuple(events))
     late = _spread(topics.latency(topic), f"the latency of the topic {topic!r} is not specified")
     late += _spread(transmission.agent, "the latency of the agent is not specified")
     stated = topics.solved.event_models.get(transmission.name)
@@ -45,10 +48,10 @@ def violated(transmission: Transmission, host: HostResults) -> str:
 def _difference(real: EventModel, stated: EventModel, topic: str) -> str:
     if not isinstance(real, PeriodicEvents) or not isinstance(stated, PeriodicEvents):
         return f"it is not known whether the messages of {topic!r} come as seldom as stated"
-    if real.period < stated.period:
-        return f"the host publishes {topic!r} every {time_text(real.period)}, more often than stated"
-    jitter, allowed = real.jitter, stated.jitter + real.period - stated.period
-    if jitter > allowed or (stated.min_interarrival and real.period - jitter < stated.min_interarrival):
+    if real.period != stated.period:
+        return f"the host publishes {topic!r} every {time_text(real.period)}, and an interval of {time_text(stated.period)} is stated"
+    jitter = real.jitter
+    if jitter > stated.jitter or (stated.min_interarrival and real.period - jitter < stated.min_interarrival):
         return f"the messages of {topic!r} have a jitter of up to {time_text(jitter)} on the wire, and {time_text(stated.jitter)} is stated"
     return ""
 
