@@ -12,8 +12,6 @@ from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
-from amalthea_uros.analyze.host.evaluate import evaluate_host
-from amalthea_uros.analyze.host.findings import note_host
 from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
@@ -48,10 +46,8 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     solution = solve(timing_context(system, settings))
     system = solution.context.system
     unknown = unknown_phases(system)
-    host = evaluate_host(solution)
-    executors, crossing = evaluate_executors_and_messages(solution, host)
+    executors, crossing, host = evaluate_executors_and_messages(solution)
     note_executors(executors, solution)
-    note_host(host, solution.context.notes)
     every = _of_all_phases(solution, unknown, executors, crossing)
     found = every or _analysis(solution, JobBudget(), executors, crossing)
     phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
@@ -59,7 +55,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     is_used = every is None or bool(executors or crossing)
     return replace(
         found,
-        host=host.executors,
+        host=host,
         assumptions=tuple(dict.fromkeys((*found.assumptions, *(notes.assumptions if is_used else ()), *phases))),
         findings=tuple(dict.fromkeys((*found.findings, *(notes.found if is_used else ())))),
     )

@@ -1,7 +1,7 @@
 """The host: computers with ROS 2, whose executors call callbacks in threads, and topics between them.
 
-Its executors differ from those of `perf.executors`: they work off a ready set or a queue, and each distribution of ROS 2 has rules of its
-own. Kinds of handles and bounds of times are the same.
+Its executors differ from those of `perf.executors`: they work off a ready set or a queue, and each distribution of ROS 2 has rules
+of its own. Kinds of handles and bounds of times are the same.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.perf.network import Span
 from amalthea_uros.units import Time
-
 
 #: The kind of the custom events that stand for callbacks of the host in chains.
 HOST_EVENT = "callback of the host"

@@ -30,8 +30,8 @@ class System:
     """The generic performance model of a system.
 
     Besides the models that AMALTHEA has, too, it has the executors that spin in loops, and the network: tasks and cores of the other
-    models stand for them; and the host. The mappings find objects by name; where a name occurs twice, the last one counts (an extracted model has
-    unique names).
+    models stand for them. It has the host as well. The mappings find objects by name; where a name occurs twice, the last one counts
+    (an extracted model has unique names).
     """
 
     hardware: Hardware = field(default_factory=Hardware)

@@ -7,8 +7,9 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
-from amalthea_uros.spec.section import DescriptionSection, Shorthand
-from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Rate, described, problem
+from amalthea_uros.spec.section import DescriptionSection
+from amalthea_uros.spec.transports import LatencySection
+from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Rate, described, problem
 
 _RELEASES = described(
     foxy="Ready sets in the order of registration.",
@@ -33,24 +34,6 @@ _GROUPS = described(
     mutually_exclusive="Its callbacks do not overlap.",
     reentrant="Its callbacks can overlap, each with itself, too.",
 )
-
-
-class LatencySection(Shorthand):
-    """A latency: a time, or a mapping with `min` and `max`."""
-
-    shorthand = ("min", "max")
-    plain_value = "The same latency of every message."
-
-    min: OffsetOrNumberZero
-    """Minimum latency."""
-    max: OffsetOrNumberZero
-    """Maximum latency."""
-
-    @model_validator(mode="after")
-    def _is_ordered(self) -> Self:
-        if self.min > self.max:
-            raise problem("'min' is greater than 'max'")
-        return self
 
 
 class ComputerSection(DescriptionSection):

@@ -198,7 +198,11 @@ class Topics:
         is_received = direction is Direction.TO_CONTROLLER
         name = f"{plain_topic(topic)}_{'received' if is_received else 'sent'}_by_{callback}"
         for each in self.network.transmissions:
-            is_same = (each.direction, each.callback, plain_topic(each.topic or "")) == (direction, callback, plain_topic(topic))
+            is_same = (each.direction, each.callback, plain_topic(each.topic or "")) == (
+                direction,
+                callback,
+                plain_topic(topic),
+            )
             if is_same and each.purpose is Purpose.DATA:
                 change = ProcessChange.ACTIVATE if is_received else ProcessChange.TERMINATE
                 return MessageOfTopic(ProcessEvent(name=name, process=each.name, change=change), callback, each.processes)

@@ -35,17 +35,20 @@ class ChainBuilder:
     elements : by the name that a path uses
     topics : which a path can contain, too
     dataflow : of the system, which has no events yet
-    host : callbacks of the host, which a path can contain, too
     """
 
     elements: Mapping[str, ChainElement]
     topics: Topics
     dataflow: Dataflow
     notes: Notes
-    host: Mapping[str, HostCallback] = field(default_factory=dict)
     events: dict[str, perf.Event] = field(default_factory=dict)
     chains: dict[str, perf.EventChain] = field(default_factory=dict)
     _seen: set[str] = field(default_factory=set)
+
+    @property
+    def host(self) -> Mapping[str, HostCallback]:
+        """The callbacks of the host, which a path can contain, too."""
+        return {callback.name: callback for callback in self.dataflow.system.host.callbacks}
 
     @property
     def host_topics(self) -> frozenset[str]:

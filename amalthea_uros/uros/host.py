@@ -25,15 +25,15 @@ from amalthea_uros.uros.application.callbacks import interval_of_rate
 from amalthea_uros.uros.application.notes import Notes
 
 
-def host_of(description: Description, notes: Notes) -> Host:
+def host_of(description: Description, problems: Notes) -> Host:
     """The host that a description describes; an empty one if it has none."""
-    return Host() if description.host is None else _HostBuilder(description.host, notes).host(description)
+    return Host() if description.host is None else _HostBuilder(description.host, problems).host(description)
 
 
 @dataclass(frozen=True, slots=True)
 class _HostBuilder:
     section: spec.HostSection
-    notes: Notes
+    problems: Notes
 
     def host(self, description: Description) -> Host:
         """The host."""
@@ -49,20 +49,26 @@ class _HostBuilder:
         )
 
     def _check(self, description: Description) -> None:
-        section, notes = self.section, self.notes
-        for kind, items in (("computer", section.computers), ("executor of the host", section.executors), ("node", section.nodes)):
-            notes.unique(kind, ((each.name, each.location("name")) for each in items))
-        notes.unique("topic", ((plain_topic(each.topic), each.location("topic")) for each in section.topics))
+        section, problems = self.section, self.problems
+        for kind, items in (
+            ("computer", section.computers),
+            ("executor of the host", section.executors),
+            ("node", section.nodes),
+        ):
+            problems.unique(kind, ((each.name, each.location("name")) for each in items))
+        problems.unique("topic", ((plain_topic(each.topic), each.location("topic")) for each in section.topics))
         callbacks = [callback for node in section.nodes for callback in _callbacks(node)]
-        notes.unique("callback of the host", ((each.name, each.location("name")) for each in callbacks))
+        problems.unique("callback of the host", ((each.name, each.location("name")) for each in callbacks))
         executors = {executor.name for executor in section.executors}
         for node in section.nodes:
             if node.executor not in executors:
-                notes.undefined("executor of the host", node.executor, executors, node.location("executor"))
+                problems.undefined("executor of the host", node.executor, executors, node.location("executor"))
             groups = {group.name for group in node.groups}
             for callback in _callbacks(node):
                 if callback.group is not None and callback.group not in groups:
-                    notes.undefined("callback group", callback.group, groups, callback.location("group"), owner=f"node {node.name!r}")
+                    problems.undefined(
+                        "callback group", callback.group, groups, callback.location("group"), owner=f"node {node.name!r}"
+                    )
         self._check_sources(description)
 
     def _check_sources(self, description: Description) -> None:
@@ -72,24 +78,26 @@ class _HostBuilder:
         for topic in self.section.topics:
             if topic.rate is not None and plain_topic(topic.topic) in published:
                 message = f"the rate of {topic.topic!r} is stated, but follows from what publishes it"
-                self.notes.error("APP003", message, topic.location("rate"), "Remove 'rate'.")
+                self.problems.error("APP003", message, topic.location("rate"), "Remove 'rate'.")
             if topic.jitter is not None and topic.rate is None:
                 message = f"'jitter' of {topic.topic!r} has no effect without 'rate'"
-                self.notes.error("APP003", message, topic.location("jitter"), "Set 'rate', or remove 'jitter'.")
+                self.problems.error("APP003", message, topic.location("jitter"), "Set 'rate', or remove 'jitter'.")
 
     def _executor(self, section: spec.HostExecutorSection) -> HostExecutor:
         computers = {computer.name: computer for computer in self.section.computers}
         computer = section.computer
         if computer is None and len(computers) > 1:
             message = f"the computer of {section.name!r} is not specified"
-            self.notes.error("APP003", message, section.location(), f"Set 'computer' to one of {', '.join(computers)}.")
+            self.problems.error("APP003", message, section.location(), f"Set 'computer' to one of {', '.join(computers)}.")
         elif computer is not None and computer not in computers:
-            self.notes.undefined("computer", computer, computers, section.location("computer"))
+            self.problems.undefined("computer", computer, computers, section.location("computer"))
         thread = _thread(section.thread)
         cores = computers[computer].cores if computer in computers else self.section.computers[0].cores
         if beyond := next((core for core in thread.cores if core >= cores), None):
             message = f"{section.name!r} runs on core {beyond}, but the computer has the cores 0 to {cores - 1}"
-            self.notes.error("APP003", message, section.thread.location(), "Correct the number of the core, or set 'cores' of the computer.")
+            self.problems.error(
+                "APP003", message, section.thread.location(), "Correct the number of the core, or set 'cores' of the computer."
+            )
         nodes = [node for node in self.section.nodes if node.executor == section.name]
         return HostExecutor(
             name=section.name,
@@ -124,7 +132,9 @@ class _HostBuilder:
         """The bounds of an execution time; a distribution between them is not used."""
         if section.on is not None:
             message = "execution times by platform are those of controllers"
-            self.notes.error("APP003", message, section.location("on"), "State 'min' and 'max' on the computer of the callback.")
+            self.problems.error(
+                "APP003", message, section.location("on"), "State 'min' and 'max' on the computer of the callback."
+            )
             return Span()
         if section.histogram is not None:
             return Span(least=min(each.min for each in section.histogram), most=max(each.max for each in section.histogram))

@@ -34,7 +34,6 @@ from amalthea_uros.uros.chain_members import ChainElement, Topics, chain_element
 from amalthea_uros.uros.chains import ChainBuilder
 from amalthea_uros.uros.executors.activation import with_triggered_iterations
 from amalthea_uros.uros.executors.handles import deadlines
-from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.network.network import PlannedNetwork, with_network
 from amalthea_uros.uros.os import check_shared_priorities, isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.transports.messages import waits_outside
@@ -51,9 +50,7 @@ def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], ne
     waits = waits_outside(callbacks, system, context.profile)
     system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
-    system = replace(system, host=host_of(description, notes))
-    host = {callback.name: callback for callback in system.host.callbacks}
-    chains = ChainBuilder(elements, Topics.of(callbacks, system.network), Dataflow(system), notes, host)
+    chains = ChainBuilder(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
     limits = chains.add_all(description.chains)
     demanded = (*_requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
     return replace(
@@ -82,6 +79,7 @@ def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> Syste
             placements=tuple(_placements(labels, context)),
         ),
         executors=tuple(context.executors),
+        host=context.host,
     )
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from amalthea_uros.analyze.chains.segments import ChainSegment, HostSegment, name_of
-from amalthea_uros.analyze.host.evaluate import HostResults
 from amalthea_uros.analyze.host.handover import violated
+from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import HandleResult, Hop, HopKind
@@ -40,7 +40,7 @@ class HostHops:
 
         Raises
         ------
-        UnknownError : nothing connects them.
+        UnknownError : no data flow or trigger connects them.
         """
         first = segment.callbacks[0]
         if isinstance(before, Transmission):
@@ -48,7 +48,9 @@ class HostHops:
                 raise UnknownError(f"{first.name!r} does not subscribe to {name_of(before)!r}")
             yield self._topic(first.topic or "")
         elif before is not None:
-            raise UnknownError(f"a message takes the effect from {name_of(before)!r} to {first.name!r}; add its topic to the path")
+            raise UnknownError(
+                f"a message takes the effect from {name_of(before)!r} to {first.name!r}; add its topic to the path"
+            )
         route = [first]
         for one, other in pairwise(segment.callbacks):
             if self.host.releases.topics.source(other) == one:
@@ -108,7 +110,9 @@ class HostHops:
         unknown = next((each for each in responses if each.worst is None), None)
         name = f"{executor}: {', '.join(each.name for each in route)}"
         if unknown is not None:
-            reason = f"the response time of {route[responses.index(unknown)].name!r} in {executor!r} has no bound: {unknown.reason}"
+            reason = (
+                f"the response time of {route[responses.index(unknown)].name!r} in {executor!r} has no bound: {unknown.reason}"
+            )
             remedy = f"See the results of the executor {executor!r}."
             return Hop(kind=HopKind.HOST, name=name, best=best, reason=reason, remedy=remedy)
         hop_by_hop, whole = sum(each.worst or 0 for each in responses), self._whole(route)

@@ -23,7 +23,7 @@ from amalthea_uros.analyze.chains.segments import (
     TaskSegment,
     name_of,
 )
-from amalthea_uros.analyze.host.evaluate import HostResults, evaluate_host
+from amalthea_uros.analyze.host.evaluate import evaluate_host
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
@@ -50,25 +50,26 @@ _THERE_AND_BACK = "a message that comes back takes 'to_host' and 'to_controller'
 
 
 def evaluate_executors_and_messages(
-    solution: Solution, host: HostResults | None = None
-) -> tuple[Results[ExecutorResult], Results[ChainResult]]:
-    """The results of all executors in loops, and of all chains that cross them, wires, the agent or the host.
+    solution: Solution,
+) -> tuple[Results[ExecutorResult], Results[ChainResult], Results[ExecutorResult]]:
+    """The results of all executors in loops, of all chains that cross them, wires, the agent or the host, and of executors of the host.
 
     Parameters
     ----------
     solution : for unknown phases, in which any job can take what comes from outside
-    host : its results, if they are known
     """
-    jitter, sending = arrival_jitter(solution), sending_times(solution)
+    jitter, sending, host = arrival_jitter(solution), sending_times(solution), evaluate_host(solution)
     executors = Results(evaluate_executors(solution, sending=sending, extra_jitter=jitter))
     system = solution.context.system
-    evaluator = MessageChains(ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending, HostHops(host or evaluate_host(solution), solution))
+    evaluator = MessageChains(
+        ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending, HostHops(host, solution)
+    )
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
     crossing = [chain for chain in system.events.chains if crosses(chain, solution.context.dataflow)]
     chains = Results(evaluator.chain(chain) for chain in sorted(crossing, key=lambda chain: chain.name not in limited))
     for result in chains:
         _note(result, solution)
-    return executors, chains
+    return executors, chains, host.executors
 
 
 def _note(result: ChainResult, solution: Solution) -> None:

@@ -104,7 +104,10 @@ class Segments:
 
     def _segment(self, event: Event, before: ChainSegment | None) -> ChainSegment:
         """Where an event occurs; if that can be in several places, the segment before it if it is one of these."""
-        if isinstance(event, CustomEvent) and (callback := self.context.system.callback_of_host_event.get(event.name)) is not None:
+        if (
+            isinstance(event, CustomEvent)
+            and (callback := self.context.system.callback_of_host_event.get(event.name)) is not None
+        ):
             return HostSegment((callback,))
         try:
             occurrences = self.context.dataflow.events.of(event)
@@ -162,7 +165,9 @@ class Segments:
         if before is None:
             return EntryKind.FIRST
         if isinstance(before, HostSegment):
-            raise UnknownError(f"a message takes the effect from {name_of(before, is_end=True)!r} over the agent; add its topic to the path")
+            raise UnknownError(
+                f"a message takes the effect from {name_of(before, is_end=True)!r} over the agent; add its topic to the path"
+            )
         if isinstance(segment, TaskSegment):
             if isinstance(before, Transmission):
                 # The last process that it passes may activate the next one.

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.host import starvation_free
+from amalthea_uros.analyze.host.findings import add_findings
 from amalthea_uros.analyze.host.releases import HostReleases
+from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.analyze.host.topics import HostTopics
 from amalthea_uros.analyze.response_times import edf, non_preemptive
 from amalthea_uros.analyze.response_times.busy_window import Interference
@@ -20,24 +22,13 @@ from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time, time_text
 
 
-@dataclass(frozen=True, slots=True)
-class HostResults:
-    """The results of a host.
-
-    Attributes
-    ----------
-    releases : with the latencies from the first callback of each route
-    """
-
-    releases: HostReleases
-    executors: Results[ExecutorResult]
-
-
 def evaluate_host(solved: SolvedSystem) -> HostResults:
-    """The results of the host of a system."""
+    """The results of the host of a system; problems become findings."""
     host = solved.context.system.host
     releases = HostReleases(HostTopics(host, solved)).solve()
-    return HostResults(releases, Results(_result(executor, host, releases) for executor in host.executors))
+    results = HostResults(releases, Results(_result(executor, host, releases) for executor in host.executors))
+    add_findings(results, solved.context.notes)
+    return results
 
 
 def _result(executor: HostExecutor, host: Host, releases: HostReleases) -> ExecutorResult:
@@ -58,8 +49,8 @@ def _responses(executor: HostExecutor, host: Host, releases: HostReleases) -> di
     known = {callback.name: _from_release(callback, releases) for callback in executor.callbacks}
     if executor.kind is HostExecutorKind.MULTI_THREADED:
         return known
-    for found in _improved(executor, host, releases, known):
-        for name, response in found.items():
+    for improved in _improved(executor, host, releases, known):
+        for name, response in improved.items():
             if response.worst is not None and response.worst < (known[name].worst or 0):
                 known[name] = replace(response, claim=Claim.BOUND)
     return known
@@ -72,14 +63,18 @@ def _from_release(callback: HostCallback, releases: HostReleases) -> Response:
     return replace(latency, worst=(latency.worst or 0) - before, best=callback.execution.least)
 
 
-def _improved(executor: HostExecutor, host: Host, releases: HostReleases, known: dict[str, Response]) -> list[dict[str, Response]]:
+def _improved(
+    executor: HostExecutor, host: Host, releases: HostReleases, known: dict[str, Response]
+) -> list[dict[str, Response]]:
     """The results of the methods that hold for the kind of the executor and the distribution."""
     supply, higher = releases.processors[executor.name].supply, releases.preempting(executor)
     tasks, is_batch = _in_ready_set(executor, releases), executor.kind is HostExecutorKind.SINGLE_THREADED
     if executor.kind is HostExecutorKind.STATIC:
         is_batch = host.release.keeps_batches
         if not is_batch and not higher and supply is FULL:
-            return [_non_preemptive(tasks, frozenset(each.name for each in executor.callbacks if each.kind is HandleKind.TIMER))]
+            return [
+                _non_preemptive(tasks, frozenset(each.name for each in executor.callbacks if each.kind is HandleKind.TIMER))
+            ]
     if is_batch and not higher:
         return [dict(starvation_free.improved(tasks, known, _is_order_known(executor, host.release), supply))]
     if executor.kind is HostExecutorKind.EVENTS:
@@ -97,13 +92,13 @@ def _others(task: AnalysedTask, tasks: list[AnalysedTask]) -> list[AnalysedTask]
 
 def _non_preemptive(tasks: list[AnalysedTask], timers: frozenset[str]) -> dict[str, Response]:
     """The static executor since jazzy: one callback for each wait, subscriptions first, in an order of addresses that is not known."""
-    found = {}
+    responses = {}
     for task in tasks:
         others = _others(task, tasks)
         higher = [other for other in others if task.name in timers or other.name not in timers]
         blocking = max((other.demand.worst - 1 for other in others if other not in higher), default=0)
-        found[task.name] = non_preemptive.response_time(task, higher, blocking)
-    return found
+        responses[task.name] = non_preemptive.response_time(task, higher, blocking)
+    return responses
 
 
 def _in_ready_set(executor: HostExecutor, releases: HostReleases) -> list[AnalysedTask]:

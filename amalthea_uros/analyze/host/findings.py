@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.host.evaluate import HostResults
 from amalthea_uros.analyze.host.handover import handed_over, violated
+from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 
@@ -15,22 +15,24 @@ _ASSUMPTIONS = (
 )
 
 
-def note_host(host: HostResults, notes: AnalysisNotes) -> None:
+def add_findings(host: HostResults, collected: AnalysisNotes) -> None:
     """Report executors without bounds, lost messages, and messages that are not as a controller expects them."""
     for sentence in _ASSUMPTIONS if host.executors else ():
-        notes.assume(sentence)
+        collected.assume(sentence)
     releases = host.releases
     for executor, result in zip(releases.topics.host.executors, host.executors, strict=True):
         if result.reason:
-            notes.warning("HST001", f"the response times in {result.name!r} of the host have no bound: {result.reason}", executor)
+            collected.warning(
+                "HST001", f"the response times in {result.name!r} of the host have no bound: {result.reason}", executor
+            )
         for callback in executor.callbacks:
             lost = result.handles[callback.name].lost
             if lost is not None:
-                notes.warning("HST002", f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}", callback)
+                collected.warning("HST002", f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}", callback)
     for transmission in handed_over(host):
         try:
             difference = violated(transmission, host)
         except UnknownError:
             continue  # the executor has a finding, and the chain as well
         if difference:
-            notes.error("HST003", difference, transmission)
+            collected.error("HST003", difference, transmission)

@@ -6,7 +6,7 @@ must hold for what they publish: the same interval, and no more jitter on the wi
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.host.evaluate import HostResults
+from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.analyze.host.topics import delayed
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
@@ -20,7 +20,9 @@ def handed_over(host: HostResults) -> list[Transmission]:
     return [
         each
         for each in topics.solved.context.system.network.transmissions
-        if each.direction is Direction.TO_CONTROLLER and each.purpose is Purpose.DATA and topics.publishers(plain_topic(each.topic))
+        if each.direction is Direction.TO_CONTROLLER
+        and each.purpose is Purpose.DATA
+        and topics.publishers(plain_topic(each.topic))
     ]
 
 
@@ -52,7 +54,8 @@ def _difference(real: EventModel, stated: EventModel, topic: str) -> str:
         return f"the host publishes {topic!r} every {time_text(real.period)}, and an interval of {time_text(stated.period)} is stated"
     jitter = real.jitter
     if jitter > stated.jitter or (stated.min_interarrival and real.period - jitter < stated.min_interarrival):
-        return f"the messages of {topic!r} have a jitter of up to {time_text(jitter)} on the wire, and {time_text(stated.jitter)} is stated"
+        late, allowed = time_text(jitter), time_text(stated.jitter)
+        return f"the messages of {topic!r} have a jitter of up to {late} on the wire, and {allowed} is stated"
     return ""
 
 

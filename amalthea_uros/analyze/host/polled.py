@@ -1,16 +1,18 @@
 """Response times in an executor of one thread, whatever the order of its callbacks.
 
-After D. Casini, T. Blass, I. Luetkebohle and B. B. Brandenburg, "Response-time analysis of ROS 2 processing chains under reservation-based
-scheduling", ECRTS 2019. A job that is released `a` after the start of a busy window ends within it at the least x with
+After D. Casini, T. Blass, I. Luetkebohle and B. B. Brandenburg, "Response-time analysis of ROS 2 processing chains under
+reservation-based scheduling", ECRTS 2019. A job that is released `a` after the start of a busy window ends within it at the least x
+with
 
     supply(x) = own jobs released up to a + jobs of the others released before it starts, at x - C at the latest
 
-which only needs that the executor is never idle while a callback is pending, and that callbacks do not preempt each other. So it holds for
-the single-threaded, the static and the events executor of all distributions. Its bound for timers that are looked at before each callback
-only holds up to dashing, and is not used. Threads that preempt the executor interfere up to x, as tasks of higher priority do.
+which only needs that the executor is never idle while a callback is pending, and that callbacks do not preempt each other. So it
+holds for the single-threaded, the static and the events executor of all distributions. Its bound for timers that are looked at
+before each callback only holds up to dashing, and is not used. Threads that preempt the executor interfere up to x, as tasks of
+higher priority do.
 
-If the tasks have the activations of the callbacks with which their chains enter the executor, response times begin with these: the bound
-of the paper for chains.
+If the tasks have the activations of the callbacks with which their chains enter the executor, response times begin with these: the
+bound of the paper for chains.
 """
 
 from __future__ import annotations
@@ -52,9 +54,7 @@ def response_time(
         reason = "its busy window does not end"
         return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
     worst = max((end or 0) - after for end, after in ends)
-    return Response(
-        worst=worst, best=best, method=METHOD, source=SOURCE, claim=Claim.BOUND, jobs=len(ends), window=window
-    )
+    return Response(worst=worst, best=best, method=METHOD, source=SOURCE, claim=Claim.BOUND, jobs=len(ends), window=window)
 
 
 def releases(task: AnalysedTask, window: Time) -> Iterator[Time]:

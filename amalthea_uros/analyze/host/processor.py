@@ -1,9 +1,9 @@
 """The processor as the thread of an executor on a host sees it: what can preempt it, and its supply.
 
-Linux (sched(7)): SCHED_DEADLINE before SCHED_FIFO before SCHED_OTHER; among threads of SCHED_FIFO the higher priority is first, and one
-of equal priority runs until it waits. A reservation of SCHED_DEADLINE provides its budget in each period, and nothing for twice the rest
-of a period in the worst case (I. Shin and I. Lee, RTSS 2003). That holds if each reservation can have a core of its own, or all of them
-fit on the only core; the global EDF of several cores promises less.
+Linux (sched(7)): SCHED_DEADLINE before SCHED_FIFO before SCHED_OTHER; among threads of SCHED_FIFO the higher priority is first, and
+one of equal priority runs until it waits. A reservation of SCHED_DEADLINE provides its budget in each period, and nothing for twice
+the rest of a period in the worst case (I. Shin and I. Lee, RTSS 2003). That holds if each reservation can have a core of its own,
+or all of them fit on the only core; the global EDF of several cores promises less.
 """
 
 from __future__ import annotations
@@ -58,7 +58,9 @@ def processor_of(executor: HostExecutor, host: Host) -> HostProcessor:
     higher = tuple(other for other in neighbours if _can_preempt(other, executor, cores))
     reservations = tuple(map(_reservation, filter(_is_reserved, neighbours)))
     if needed > 1 and (higher or reservations):
-        raise UnknownError(f"other threads can preempt those of {name!r}, which no published method covers; give it cores of its own")
+        raise UnknownError(
+            f"other threads can preempt those of {name!r}, which no published method covers; give it cores of its own"
+        )
     return HostProcessor(higher, reservations)
 
 
@@ -84,9 +86,7 @@ def _reserved(executor: HostExecutor, neighbours: list[HostExecutor], host: Host
     share = sum(Fraction(each.thread.budget, each.thread.period) for each in reserved)
     if len(reserved) > cores and (cores > 1 or share > 1):
         raise UnknownError(f"more reservations than cores on {executor.computer!r}: that of {executor.name!r} can be late")
-    return HostProcessor(
-        supply=Supply(budget=thread.budget, period=thread.period, wait=2 * (thread.period - thread.budget))
-    )
+    return HostProcessor(supply=Supply(budget=thread.budget, period=thread.period, wait=2 * (thread.period - thread.budget)))
 
 
 def _reservation(executor: HostExecutor) -> AnalysedTask:

@@ -1,9 +1,10 @@
 """Latencies of chains in a multi-threaded executor of which all callbacks are reentrant, on cores of its own.
 
-After X. Jiang, D. Ji, N. Guan, R. Li, Y. Tang and Y. Wang, "Real-time scheduling and analysis of processing chains on multi-threaded
-executor in ROS 2", RTSS 2022, theorem 1: what is before the last callback of a chain waits at most for the work of all other chains,
-divided by the number of threads. Its workload bound needs that no chain takes longer than its period; and a counterexample for groups that
-exclude each other is known (H. Teper et al., "Thread Carefully", RTAS 2024), so that it is used for reentrant groups only.
+After X. Jiang, D. Ji, N. Guan, R. Li, Y. Tang and Y. Wang, "Real-time scheduling and analysis of processing chains on
+multi-threaded executor in ROS 2", RTSS 2022, theorem 1: what is before the last callback of a chain waits at most for the work of
+all other chains, divided by the number of threads. Its workload bound needs that no chain takes longer than its period; and a
+counterexample for groups that exclude each other is known (H. Teper et al., "Thread Carefully", RTAS 2024), so that it is used for
+reentrant groups only.
 """
 
 from __future__ import annotations

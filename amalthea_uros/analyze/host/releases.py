@@ -74,15 +74,15 @@ class HostReleases:
             higher = self.preempting(executor)
             for task in tasks:
                 others = [other for other in tasks if other is not task]
-                found = polled.response_time(task, others, higher, processor.supply)
-                self.latencies[task.name] = found
-                if found.worst is None:
-                    raise UnknownError(found.reason)
+                response = polled.response_time(task, others, higher, processor.supply)
+                self.latencies[task.name] = response
+                if response.worst is None:
+                    raise UnknownError(response.reason)
         except UnknownError as error:
             self.reasons[executor.name] = str(error)
 
     def preempting(self, executor: HostExecutor) -> list[AnalysedTask]:
-        """What can preempt the thread of an executor."""
+        """Return the tasks that can preempt the thread of an executor."""
         processor = self.processors[executor.name]
         return [*processor.reservations, *(task for other in processor.higher for task in self.tasks(other))]
 
@@ -126,11 +126,11 @@ class HostReleases:
         UnknownError : their number has no bound.
         """
         entering = self._entering(self.topics.route(callback)[0])
-        found, executor = self.latencies.get(callback.name), self.topics.executor_of[callback.name]
+        response, executor = self.latencies.get(callback.name), self.topics.executor_of[callback.name]
         if executor.name in self.reasons:
             raise UnknownError(self._depends_on(callback, executor))
-        # Of what was not looked at yet, the least variation is assumed; the iteration goes on until all are consistent.
-        late = 0 if found is None or found.worst is None else found.worst - self.best(callback)
+        # Of what was not looked at yet, the least variation is assumed; the iteration continues until all are consistent.
+        late = 0 if response is None or response.worst is None else response.worst - self.best(callback)
         return delayed(entering, late)
 
     def _depends_on(self, callback: HostCallback, executor: HostExecutor) -> str:
@@ -145,7 +145,7 @@ class HostReleases:
         sources += [topics.from_controller(each) for each in topics.transmissions(topic, Direction.TO_AGENT)]
         latency, described = topics.latency(topic), topics.described.get(topic)
         if not sources and described is not None and described.interval is not None:
-            # Its jitter is that of the messages in the queue, as nobody states when they were published.
+            # The jitter is that of the messages in the queue: the times of their publication are unknown.
             return SporadicEvents(described.interval, described.jitter)
         if not sources:
             raise UnknownError(f"nobody that is described publishes {topic!r}; set 'rate' of the topic")
@@ -170,12 +170,12 @@ class HostReleases:
         if sum(map(len, ends)) > len(executor.callbacks):
             raise UnknownError("no published method covers chains that branch in a multi-threaded executor")
         chains = [self._chain(route) for route in ends]
-        found: dict[str, Response] = {}
+        latencies: dict[str, Response] = {}
         for route, response in zip(ends, reentrant.latencies(chains, executor.threads), strict=True):
             if response.worst is None:
                 raise UnknownError(response.reason)
-            found |= {callback.name: response for callback in route}
-        return found
+            latencies |= {callback.name: response for callback in route}
+        return latencies
 
     def _chain(self, route: tuple[HostCallback, ...]) -> reentrant.ReentrantChain:
         events = self._entering(route[0])

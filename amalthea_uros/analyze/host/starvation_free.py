@@ -1,13 +1,13 @@
 """Response times in an executor of one thread that calls each ready callback once before it polls again.
 
 After T. Blass, D. Casini, S. Bozhko and B. B. Brandenburg, "A ROS 2 response-time analysis exploiting starvation freedom and
-execution-time variance", RTSS 2021. While a job is pending for n polling points, any other callback is called n times at most, and once
-more if it comes before the job in a ready set. Bounds of the response times of all callbacks have to be known before; each result can only
-be smaller, so that results may be used in their turn.
+execution-time variance", RTSS 2021. While a job is pending for n polling points, any other callback is called n times at most, and
+once more if it comes before the job in a ready set. Bounds of the response times of all callbacks have to be known before; each
+result can only be smaller, so that results may be used in their turn.
 
-It holds for executors that work off a whole ready set: the single-threaded one, and the static one up to iron. The order in a ready set
-is not known from jazzy on, nor across callback groups from galactic on (`owner_less` maps and hash tables of addresses in rclcpp): then
-every callback counts as one that comes before.
+It holds for executors that work off a whole ready set: the single-threaded one, and the static one up to iron. The order in a ready
+set is not known from jazzy on, nor across callback groups from galactic on (`owner_less` maps and hash tables of addresses in
+rclcpp): then every callback counts as one that comes before.
 """
 
 from __future__ import annotations
@@ -35,7 +35,10 @@ def improved(
     """
     best = {name: response.worst or 0 for name, response in known.items()}
     for _ in range(MAX_STEPS):
-        reached = {task.name: min(best[task.name], _response(index, tasks, best, is_ordered, supply)) for index, task in enumerate(tasks)}
+        reached = {
+            task.name: min(best[task.name], _response(index, tasks, best, is_ordered, supply))
+            for index, task in enumerate(tasks)
+        }
         if reached == best:
             break
         best = reached
@@ -48,9 +51,7 @@ def _response_of(known: Response, worst: Time) -> Response:
     return Response(worst=worst, best=known.best, method=METHOD, source=SOURCE, claim=Claim.BOUND)
 
 
-def _response(
-    index: int, tasks: Sequence[AnalysedTask], known: Mapping[str, Time], is_ordered: bool, supply: Supply
-) -> Time:
+def _response(index: int, tasks: Sequence[AnalysedTask], known: Mapping[str, Time], is_ordered: bool, supply: Supply) -> Time:
     task = tasks[index]
     points, limit = task.events.eta_plus(known[task.name]), known[task.name]
 

@@ -63,8 +63,8 @@ class HostTopics:
 
     def latency(self, topic: str) -> Span:
         """From a publication of a topic to the queue of a subscription."""
-        found = self.described.get(topic)
-        return Span() if found is None else found.latency
+        described = self.described.get(topic)
+        return Span() if described is None else described.latency
 
     def source(self, callback: HostCallback) -> HostCallback | None:
         """The callback whose messages reach another one of its executor at its end, and nothing else does; None if there is none."""
@@ -82,12 +82,12 @@ class HostTopics:
         ------
         UnknownError : they publish in a circle.
         """
-        found = [callback]
-        while (before := self.source(found[0])) is not None:
-            if before in found:
+        route = [callback]
+        while (before := self.source(route[0])) is not None:
+            if before in route:
                 raise UnknownError(f"the messages of {callback.name!r} are published in a circle")
-            found.insert(0, before)
-        return tuple(found)
+            route.insert(0, before)
+        return tuple(route)
 
     def from_controller(self, transmission: Transmission) -> EventModel:
         """The messages of a controller when the agent publishes them.

@@ -245,7 +245,9 @@ def _executor(executor: ExecutorResult) -> Section:
 
 def _host_executor(executor: ExecutorResult) -> Section:
     """The callbacks of an executor of the host, by which method, and what can be lost."""
-    losses = [f"{each.name} can lose {each.lost.what}: {each.lost.sequence}" for each in executor.handles if each.lost is not None]
+    losses = [
+        f"{each.name} can lose {each.lost.what}: {each.lost.sequence}" for each in executor.handles if each.lost is not None
+    ]
     return section(
         f"Executor {executor.name} of the host (from the arrival of a message, or when a timer is due, to the end of the callback)",
         Sentences([executor.reason] if executor.reason else []),
@@ -257,7 +259,14 @@ def _host_executor(executor: ExecutorResult) -> Section:
 def _host_row(handle: HandleResult) -> tuple[Cell, ...]:
     lost, response = "-" if handle.lost is None else handle.lost.what, handle.response
     method = f"{response.method} ({response.source})" if response.worst is not None else UNKNOWN
-    return (handle.name, handle.kind.value, exactly(handle.interval, "-"), *response_ends(response, handle.interval), lost, method)
+    return (
+        handle.name,
+        handle.kind.value,
+        exactly(handle.interval, "-"),
+        *response_ends(response, handle.interval),
+        lost,
+        method,
+    )
 
 
 def handles(executor: ExecutorResult, is_detailed: bool = False) -> Table:
