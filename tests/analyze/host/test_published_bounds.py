@@ -118,12 +118,13 @@ def test_a_burst_is_called_once_for_each_polling_point():
 
 
 def test_chains_share_the_threads():
-    """Two jobs of the other chain can follow each other, so that it keeps one of two threads busy until the last callback starts.
+    """A whole job of the other chain is pending, and its next one can follow at once, as it ended at the end of its period.
 
-    Before its last callback, the first chain needs 5: L = 5 + (L + 1) / 2 = 11. The second one has nothing before: L = (L + 1) / 2 = 1.
+    Before its last callback, the first chain needs 5. In a window of 12, the other one executes 10 + 2: 5 + 12 / 2 = 11, where the
+    last one starts. The second chain has nothing before its only callback, and waits for 20 / 2.
     """
     first, second = latencies([ReentrantChain(100, 20, 15), ReentrantChain(100, 10, 10)], 2)
-    assert (first.worst, second.worst) == (11 + 15, 1 + 10)
+    assert (first.worst, second.worst) == (11 + 15, 10 + 10)
 
 
 def test_a_chain_that_can_exceed_its_period_leaves_all_unknown():

@@ -39,13 +39,13 @@ def random_threads(random, kind):
     left = random.uniform(0.2, 0.7)
     for number in range(random.randint(1, 4)):
         period, hops = random.choice([20, 30, 40, 60, 100]), random.choice([1, 1, 2, 3])
-        share, names = left * random.uniform(0.2, 0.6), []
+        share, names, before = left * random.uniform(0.2, 0.6), [], None
         left -= share
         for hop in range(hops):
             worst = max(1, int(period * share / hops))
             each = Callback(f"c{number}_{hop}", worst, random.randint(1, worst))
             names.append(each.name)
-            if hop:
+            if before is not None:
                 each.topic = f"m{number}_{hop}"
                 before.sends[each.topic] = random.choice([0, 0, 0, 3])
             elif random.random() < 0.4:
