@@ -5,6 +5,7 @@ from __future__ import annotations
 from amalthea_uros.analyze.host.handover import handed_over, violated
 from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.perf.network import plain_topic
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 
 _ASSUMPTIONS = (
@@ -35,4 +36,4 @@ def add_findings(host: HostResults, collected: AnalysisNotes) -> None:
         except UnknownError:
             continue  # the executor has a finding, and the chain as well
         if difference:
-            collected.error("HST003", difference, transmission)
+            collected.error("HST003", difference, releases.topics.publishers(plain_topic(transmission.topic))[0])

@@ -40,22 +40,24 @@ def violated(transmission: Transmission, host: HostResults) -> str:
     events += [topics.from_controller(each) for each in topics.transmissions(topic, Direction.TO_AGENT)]
     sent = aggregated(tuple(events))
     late = _spread(topics.latency(topic), f"the latency of the topic {topic!r} is not specified")
-    late += _spread(transmission.agent, "the latency of the agent is not specified")
+    agent = _spread(transmission.agent, "the latency of the agent is not specified")
     stated = topics.solved.event_models.get(transmission.name)
     if stated is None:
         raise UnknownError(f"the rate of {topic!r} is not specified at {transmission.callback!r}")
-    return _difference(delayed(sent, late), stated, topic)
+    return _difference(delayed(sent, late), stated, agent, transmission)
 
 
-def _difference(real: EventModel, stated: EventModel, topic: str) -> str:
+def _difference(real: EventModel, stated: EventModel, agent: Time, transmission: Transmission) -> str:
+    """The difference between what reaches the agent and what is stated, which includes the jitter of the agent."""
+    topic = plain_topic(transmission.topic)
     if not isinstance(real, PeriodicEvents) or not isinstance(stated, PeriodicEvents):
         return f"it is not known whether the messages of {topic!r} come as seldom as stated"
     if real.period != stated.period:
         return f"the host publishes {topic!r} every {time_text(real.period)}, and an interval of {time_text(stated.period)} is stated"
-    jitter = real.jitter
+    jitter = real.jitter + agent
     if jitter > stated.jitter or (stated.min_interarrival and real.period - jitter < stated.min_interarrival):
-        late, allowed = time_text(jitter), time_text(stated.jitter)
-        return f"the messages of {topic!r} have a jitter of up to {late} on the wire, and {allowed} is stated"
+        late = time_text(real.jitter)
+        return f"the host publishes {topic!r} with a jitter of up to {late}, and {transmission.callback!r} states less"
     return ""
 
 
