@@ -12,6 +12,7 @@ from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
+from amalthea_uros.analyze.host.handover import consistent
 from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
@@ -44,6 +45,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
     settings = settings or Settings()
     system = with_stated_phases(system, settings.phases)
     solution = solve(timing_context(system, settings))
+    solution = consistent(solution, lambda changed: solve(timing_context(changed, settings)))
     system = solution.context.system
     unknown = unknown_phases(system)
     executors, crossing, host = evaluate_executors_and_messages(solution)

@@ -79,7 +79,7 @@ class HostHops:
         topic, last = plain_topic(transmission.topic), segment.callbacks[-1]
         if topic not in last.publishes:
             raise UnknownError(f"{last.name!r} does not publish {topic!r}")
-        if difference := violated(transmission, self.host):
+        if difference := violated(transmission, self.host.releases):
             raise UnknownError(difference)
         return self._topic(topic)
 

@@ -30,10 +30,10 @@ def add_findings(host: HostResults, collected: AnalysisNotes) -> None:
             lost = result.handles[callback.name].lost
             if lost is not None:
                 collected.warning("HST002", f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}", callback)
-    for transmission in handed_over(host):
+    for transmission in handed_over(releases):
         try:
-            difference = violated(transmission, host)
+            difference = violated(transmission, releases)
         except UnknownError:
             continue  # the executor has a finding, and the chain as well
         if difference:
-            collected.error("HST003", difference, releases.topics.publishers(plain_topic(transmission.topic))[0])
+            collected.error("HST004", difference, releases.topics.publishers(plain_topic(transmission.topic))[0])
