@@ -124,7 +124,10 @@ def _with_real_times(system: System, transmission: Transmission, releases: HostR
         return system
     names = system.processes[transmission.name].stimuli
     stimuli = [each for each in system.stimuli.stimuli if each.name in names]
-    if len(stimuli) != 1 or not isinstance(stimuli[0], Periodic) or not isinstance(real, PeriodicEvents):
+    handles = [handle for each in system.executors for handle in each.handles if handle.transmission == transmission.name]
+    # The task of a callback outside executors has a period that was chosen for what is stated.
+    is_known = isinstance(real, PeriodicEvents) and len(stimuli) == 1 and isinstance(stimuli[0], Periodic)
+    if not handles or not is_known:
         return system
 
     def changed(handle: Handle) -> Handle:
@@ -133,10 +136,7 @@ def _with_real_times(system: System, transmission: Transmission, releases: HostR
         return replace(handle, interval=real.period, jitter=max(handle.jitter, real.jitter))
 
     executors = tuple(replace(each, handles=tuple(map(changed, each.handles))) for each in system.executors)
-    stated = max(
-        (each.jitter for executor in executors for each in executor.handles if each.transmission == transmission.name),
-        default=0,
-    )
+    stated = max(handle.jitter for handle in handles)
     late = Uniform(lower=0, upper=max(stated, real.jitter) + agent)
     arriving = replace(stimuli[0], period=real.period, jitter=late, min_distance=None)
     others = tuple(arriving if each is stimuli[0] else each for each in system.stimuli.stimuli)
