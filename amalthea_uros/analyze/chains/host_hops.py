@@ -118,7 +118,8 @@ class HostHops:
         hop_by_hop, whole = sum(each.worst or 0 for each in responses), self._whole(route)
         method = f"response time: {responses[0].method} ({responses[0].source})"
         source = (method if len(route) == 1 else "sum of response times") if hop_by_hop <= whole else _ROUTE_METHOD
-        return Hop(kind=HopKind.HOST, name=name, best=best, worst=min(hop_by_hop, whole), source=source)
+        parts = self._result(route[0]).terms if len(route) == 1 and hop_by_hop <= whole else ()
+        return Hop(kind=HopKind.HOST, name=name, best=best, worst=min(hop_by_hop, whole), source=source, parts=parts)
 
     def _whole(self, route: Sequence[HostCallback]) -> Time:
         releases = self.host.releases

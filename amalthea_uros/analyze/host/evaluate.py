@@ -14,7 +14,7 @@ from amalthea_uros.analyze.response_times import edf, non_preemptive
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
-from amalthea_uros.executors.results import ExecutorResult, HandleResult, Loss
+from amalthea_uros.executors.results import ExecutorResult, HandleResult, Loss, TimePart
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.host import Host, HostCallback, HostExecutor, HostExecutorKind, RosRelease
 from amalthea_uros.perf.network import Span
@@ -125,8 +125,24 @@ def _handle(callback: HostCallback, executor: HostExecutor, response: Response |
         runnable=callback.name,
         interval=callback.period if topic is None else topic.interval,
         response=response or unknown,
+        lateness=None if callback.period is None else Span(most=_lateness(callback, response)),
+        terms=_terms(callback, response),
         lost=None if response is None or response.worst is None else _loss(callback, executor, response.worst, releases),
     )
+
+
+def _lateness(callback: HostCallback, response: Response | None) -> Time | None:
+    """The maximum time from when a timer is due to the start of its call: it takes its least execution time after that."""
+    return None if response is None or response.worst is None else response.worst - callback.execution.least
+
+
+def _terms(callback: HostCallback, response: Response | None) -> tuple[TimePart, ...]:
+    own = callback.execution.most
+    if response is None or response.worst is None or own is None:
+        return ()
+    why = "callbacks of its executor and of threads of higher priority, and times without supply"
+    waiting = TimePart(name="others before it and meanwhile", most=response.worst - own, why=why)
+    return (waiting, TimePart(name="its execution", least=callback.execution.least, most=own))
 
 
 def _loss(callback: HostCallback, executor: HostExecutor, worst: Time, releases: HostReleases) -> Loss | None:

@@ -15,7 +15,6 @@ from amalthea_uros.analyze.host.topics import HostTopics, delayed
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import Uniform
-from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
@@ -122,22 +121,18 @@ def _with_real_times(system: System, transmission: Transmission, releases: HostR
         real, agent = _sent_by_host(transmission, releases), _agent_jitter(transmission)
     except UnknownError:
         return system
-    names = system.processes[transmission.name].stimuli
-    stimuli = [each for each in system.stimuli.stimuli if each.name in names]
+    stimuli = [each for each in system.stimuli.stimuli if each.name in system.processes[transmission.name].stimuli]
     handles = [handle for each in system.executors for handle in each.handles if handle.transmission == transmission.name]
+    arriving = stimuli[0] if len(stimuli) == 1 else None
     # The task of a callback outside executors has a period that was chosen for what is stated.
-    is_known = isinstance(real, PeriodicEvents) and len(stimuli) == 1 and isinstance(stimuli[0], Periodic)
-    if not handles or not is_known:
+    if not handles or not isinstance(arriving, Periodic) or not isinstance(real, PeriodicEvents):
         return system
-
-    def changed(handle: Handle) -> Handle:
-        if handle.transmission != transmission.name:
-            return handle
-        return replace(handle, interval=real.period, jitter=max(handle.jitter, real.jitter))
-
-    executors = tuple(replace(each, handles=tuple(map(changed, each.handles))) for each in system.executors)
-    stated = max(handle.jitter for handle in handles)
-    late = Uniform(lower=0, upper=max(stated, real.jitter) + agent)
-    arriving = replace(stimuli[0], period=real.period, jitter=late, min_distance=None)
-    others = tuple(arriving if each is stimuli[0] else each for each in system.stimuli.stimuli)
+    jitter = max(real.jitter, *(handle.jitter for handle in handles))
+    changed = {handle: replace(handle, interval=real.period, jitter=jitter) for handle in handles}
+    late = Uniform(lower=0, upper=jitter + agent)
+    stimulus = replace(arriving, period=real.period, jitter=late, min_distance=None)
+    executors = tuple(
+        replace(each, handles=tuple(changed.get(handle, handle) for handle in each.handles)) for each in system.executors
+    )
+    others = tuple(stimulus if each is arriving else each for each in system.stimuli.stimuli)
     return replace(system, executors=executors, stimuli=replace(system.stimuli, stimuli=others))

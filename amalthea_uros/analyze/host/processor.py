@@ -14,6 +14,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.host import Host, HostExecutor, HostExecutorKind, HostPolicy
+from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import PeriodicEvents
 
@@ -95,5 +96,5 @@ def _reservation(executor: HostExecutor) -> AnalysedTask:
     return AnalysedTask(
         name=executor.name,
         events=PeriodicEvents(thread.period, thread.period - thread.budget),
-        demand=MultiframeDemand.constant(thread.budget),
+        demand=MultiframeDemand.constant(Ticks(thread.budget)),
     )

@@ -17,6 +17,7 @@ from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.host import HostCallback, HostExecutor, HostExecutorKind
 from amalthea_uros.perf.network import Direction
+from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SporadicEvents, aggregated
 from amalthea_uros.timing.response import Response
@@ -101,7 +102,7 @@ class HostReleases:
         if worst is None:
             raise UnknownError(f"the execution time of {callback.name!r} has no maximum")
         return AnalysedTask(
-            name=callback.name, events=events, demand=MultiframeDemand.constant(worst, callback.execution.least)
+            name=callback.name, events=events, demand=MultiframeDemand.constant(Ticks(worst), Ticks(callback.execution.least))
         )
 
     def best(self, callback: HostCallback) -> Time:
