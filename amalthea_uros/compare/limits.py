@@ -88,19 +88,11 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     assert series.statistics is not None
     values, samples = _values(series), series.statistics.count
     if not limit.is_jitter:
-        return _with_losses(MeasuredLimit.of(limit, observe(limit, values), samples), series)
+        return MeasuredLimit.of(limit, observe(limit, values), samples)
     period = nominal_period(limit, system) if is_from_period(limit) else None
     if is_from_period(limit) and period is None:
         return MeasuredLimit.of(limit, not_observed(f"{limit.object!r} has no nominal period"), samples)
-    return _with_losses(MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples), series)
-
-
-def _with_losses(limit: MeasuredLimit, series: Series) -> MeasuredLimit:
-    """The judgement, without one if the values that are known kept an upper limit, but others were lost, which may have missed it."""
-    lost = series.counts.lost
-    if limit.verdict is not ObservedVerdict.OK or not lost or not limit.is_upper:
-        return limit
-    return replace(limit, verdict=ObservedVerdict.NOT_OBSERVED, reason=f"{counted(lost, 'value')} lost, which may be later")
+    return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples)
 
 
 def _not_measured(limit: SystemLimit) -> str:
@@ -115,7 +107,13 @@ def _not_measured(limit: SystemLimit) -> str:
 
 
 def _values(series: Series) -> ObservedValues:
-    statistics = series.statistics
+    statistics, lost = series.statistics, series.counts.lost
     assert statistics is not None
-    reason = LEAST if series.is_least else ""
-    return ObservedValues(low=Fraction(statistics.min), high=Fraction(statistics.max), are_least=series.is_least, reason=reason)
+    reason = LEAST if series.is_least else f"{counted(lost, 'value')} lost, which may be later" if lost else ""
+    return ObservedValues(
+        low=Fraction(statistics.min),
+        high=Fraction(statistics.max),
+        is_complete=not lost,
+        are_least=series.is_least,
+        reason=reason,
+    )

@@ -2,7 +2,8 @@
 
 - A publication of a callback follows what the callback is called for: a message, an expiration, or a trigger, each of which leads to
   one call at most. It is sent between the earliest and the latest end of the callback after that, so that the difference is its
-  jitter. A timer that is late keeps its grid, so that a message is at most two periods late, whatever the iterations take.
+  jitter. A timer that is late keeps its grid, so that a message is at most two periods late, whatever the iterations take. Only of a
+  timer that is never a period late is each expiration followed by a message.
 - Between the same instants of two calls of a callback are a whole callback, with what it waits for, the overhead of an iteration, and
   the sleep: a minimum distance that holds without any of these bounds. A message that is sent at different places of the callback has
   only the rest of the iteration between two of them, and the whole callback as jitter (`sending_places`).
@@ -154,7 +155,9 @@ def _calls(
         late = min(2 * ready.period, 2 * ready.period if late is None else late)
     if ready is None or late is None:
         return SporadicEvents(distance) if distance else None
-    calls = type(ready)(ready.period, ready.jitter + late, distance if places.most == 1 else 0)
+    # A timer can lose expirations of which it is late, and a message can find its queue full.
+    is_each = handle.kind is HandleKind.TIMER and worst is not None and worst <= ready.period
+    calls = (type(ready) if is_each else SporadicEvents)(ready.period, ready.jitter + late, distance if places.most == 1 else 0)
     return calls if places.most == 1 else Multiplied(calls, places.most)
 
 
