@@ -12,18 +12,16 @@ from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
-from amalthea_uros.analyze.host.handover import consistent
+from amalthea_uros.analyze.host.handover import solve_with_host
 from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
 from amalthea_uros.analyze.processes import process_results
-from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.executors.bounds.findings import note_executors
 from amalthea_uros.executors.results import ExecutorResult
-from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import (
@@ -44,8 +42,7 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
         )
     settings = settings or Settings()
     system = with_stated_phases(system, settings.phases)
-    solution = solve(timing_context(system, settings))
-    solution = consistent(solution, lambda changed: solve(timing_context(changed, settings)))
+    solution = solve_with_host(system, settings)
     system = solution.context.system
     unknown = unknown_phases(system)
     executors, crossing, host = evaluate_executors_and_messages(solution)

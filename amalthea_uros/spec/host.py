@@ -77,6 +77,10 @@ class ThreadSection(DescriptionSection):
         return self
 
 
+def _without_policy() -> ThreadSection:
+    return ThreadSection()
+
+
 class HostExecutorSection(DescriptionSection):
     """An executor of the host."""
 
@@ -90,7 +94,7 @@ class HostExecutorSection(DescriptionSection):
     """Class of rclcpp."""
     threads: Count | None = None
     """Number of threads of a multi-threaded executor."""
-    thread: ThreadSection = Field(default_factory=ThreadSection)
+    thread: ThreadSection = Field(default_factory=_without_policy)
     """How its thread is scheduled."""
 
     @model_validator(mode="after")

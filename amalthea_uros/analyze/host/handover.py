@@ -7,17 +7,19 @@ so that both sides are analysed until nothing changes (K. Richter 2005).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.topics import HostTopics, delayed
+from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, aggregated
 from amalthea_uros.units import Time, time_text
 
@@ -25,13 +27,9 @@ from amalthea_uros.units import Time, time_text
 _MAX_PASSES = 30
 
 
-def consistent(solution: Solution, solve: Callable[[System], Solution]) -> Solution:
-    """The solution in which messages of the host come as the host sends them; what was stated otherwise becomes a finding.
-
-    Parameters
-    ----------
-    solve : analyses another system
-    """
+def solve_with_host(system: System, settings: Settings) -> Solution:
+    """The solution in which messages of the host come as the host sends them; what was stated otherwise becomes a finding."""
+    solution = solve(timing_context(system, settings))
     stated = solution.context.system
     for _ in range(_MAX_PASSES if stated.host.executors else 0):
         releases = HostReleases(HostTopics(stated.host, solution)).solve()
@@ -40,7 +38,7 @@ def consistent(solution: Solution, solve: Callable[[System], Solution]) -> Solut
             system = _with_real_times(system, transmission, releases)
         if system is solution.context.system:
             break
-        solution = solve(system)
+        solution = solve(timing_context(system, settings))
     _note_changes(stated, solution)
     return solution
 
