@@ -37,6 +37,7 @@ RUNS = {
         ("analyze", "no-times.amxmi", "--set", "Control_Function.execution_time=500us"),
         ("analyze", "way.yaml"),
         ("analyze", "open.amxmi"),
+        ("analyze", "host.yaml"),
     ),
     "amuros simulate": (
         ("simulate", ADVANCED, "--duration", "100ms", "--labels", "all"),
@@ -123,6 +124,23 @@ SHARED = {
     "change": "amuros analyze",
     "impact": "amuros analyze",
 }
+
+#: A timer that can skip periods.
+HOST = """
+amuros: 1
+name: host
+hardware: host
+host:
+  ros: humble
+  computers: [{name: pc}]
+  executors: [{name: main, thread: {policy: fifo, priority: 1}}]
+  nodes:
+    - name: node
+      executor: main
+      timers:
+        - {name: Fast, period: 10 ms, execution_time: 1 ms}
+        - {name: Slow, period: 100 ms, execution_time: 20 ms}
+"""
 
 Place = tuple[str, ...]
 
@@ -235,6 +253,7 @@ def folder(tmp_path):
     model.root.constraints_model.requirements.append(am.ProcessRequirement(name="preemptions", process=process, limit=count))
     save(model, tmp_path / "counted.amxmi")
     (tmp_path / "way.yaml").write_text(WAY)
+    (tmp_path / "host.yaml").write_text(HOST)
     (tmp_path / "lossy.yaml").write_text(WAY.replace("transport: {", "transport: {losses: 1 per 1 s, "))
     (tmp_path / "loops.yaml").write_text(LOOPS)
     (tmp_path / "arduino.yaml").write_text(ARDUINO)

@@ -27,6 +27,7 @@ PAGES = {
     "os": ("Keys of the operating system", ("os",)),
     "middleware": ("Keys of the middleware", ("middleware",)),
     "application": ("Keys of the micro-ROS application", ("application",)),
+    "host": ("Keys of the host with ROS 2", ("host",)),
     "tasks": ("Keys of tasks, ISRs and labels", ("tasks", "isrs", "labels")),
     "chains": ("Keys of chains and requirements", ("chains", "requirements")),
 }

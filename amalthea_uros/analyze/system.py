@@ -12,17 +12,16 @@ from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
+from amalthea_uros.analyze.host.handover import solve_with_host
 from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
 from amalthea_uros.analyze.process_results import process_results
-from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.executors.bounds.findings import note_executors
 from amalthea_uros.executors.results import ExecutorResult
-from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import (
@@ -55,10 +54,10 @@ def analyze_while(system: System, settings: Settings | None, is_wanted: Callable
         )
     settings = settings or Settings()
     system = with_stated_phases(system, settings.phases)
-    solution = solve(timing_context(system, settings))
+    solution = solve_with_host(system, settings)
     system = solution.context.system
     unknown = unknown_phases(system)
-    executors, crossing = evaluate_executors_and_messages(solution)
+    executors, crossing, host = evaluate_executors_and_messages(solution)
     note_executors(executors, solution)
     every, is_complete = _of_all_phases(solution, unknown, executors, crossing, is_wanted)
     if not is_complete:
@@ -69,6 +68,7 @@ def analyze_while(system: System, settings: Settings | None, is_wanted: Callable
     is_used = every is None or bool(executors or crossing)
     return replace(
         found,
+        host=host,
         assumptions=tuple(dict.fromkeys((*found.assumptions, *(notes.assumptions if is_used else ()), *phases))),
         findings=tuple(dict.fromkeys((*found.findings, *(notes.found if is_used else ())))),
     )

@@ -15,7 +15,12 @@ from amalthea_uros.bridge.basics.context import Extracting
 from amalthea_uros.bridge.tables.constraints import extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
-from amalthea_uros.bridge.tables.middleware import extract_executors, extract_network, with_unknown_activation
+from amalthea_uros.bridge.tables.middleware import (
+    extract_executors,
+    extract_host,
+    extract_network,
+    with_unknown_activation,
+)
 from amalthea_uros.bridge.tables.objects import OBJECTS
 from amalthea_uros.bridge.tables.os import extract_overhead, extract_system
 from amalthea_uros.bridge.tables.software import extract_modes
@@ -111,6 +116,7 @@ class _Extract:
             system,
             executors=extract_executors(tasks, system, context),
             network=extract_network(self.sub_models(am.SWModel), tasks, system, context),
+            host=extract_host(self.sub_models(am.SWModel), context),
         )
         is_network_lost = any(model in context.without_property for model in self.sub_models(am.SWModel))
         unknown = {context.names[task] for task in tasks if is_network_lost or task in context.without_property}

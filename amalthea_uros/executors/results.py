@@ -39,6 +39,8 @@ class HopKind(StrEnum):
     INTERRUPT = "interrupt"
     MIDDLEWARE = "middleware task"
     EXECUTOR = "executor"
+    HOST = "host"
+    TOPIC = "topic"
     POLLING = "polling"
     SAMPLING = "sampling"
     TASKS = "tasks"

@@ -19,6 +19,7 @@ FAMILIES = {
     "CFG": "Settings of a project",
     "APP": "Content of app.yaml",
     "EXE": "Executors that spin in loops",
+    "HST": "Executors of ROS 2 on the host",
     "BLD": "Building a model",
     "GEN": "Generating and checking build options",
     "EXT": "Extracting the performance model",

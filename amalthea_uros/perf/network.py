@@ -18,6 +18,11 @@ MOST_LOST = 1000
 BILLION = 10**9
 
 
+def plain_topic(topic: str | None) -> str:
+    """A topic without the slash at its beginning; "" for none."""
+    return (topic or "").removeprefix("/")
+
+
 class WireKind(StrEnum):
     """What a wire is."""
 

@@ -13,6 +13,7 @@ from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware, Interconnect, Memory
+from amalthea_uros.perf.host import Host, HostCallback
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.network import Network, Transmission
@@ -29,8 +30,8 @@ class System:
     """The generic performance model of a system.
 
     Besides the models that AMALTHEA has, too, it has the executors that spin in loops, and the network: tasks and cores of the other
-    models stand for them. The mappings find objects by name; where a name occurs twice, the last one counts (an extracted model has
-    unique names).
+    models stand for them. It has the host as well. The mappings find objects by name; where a name occurs twice, the last one counts
+    (an extracted model has unique names).
     """
 
     hardware: Hardware = field(default_factory=Hardware)
@@ -42,6 +43,7 @@ class System:
     constraints: Constraints = field(default_factory=Constraints)
     executors: tuple[Executor, ...] = ()
     network: Network = field(default_factory=Network)
+    host: Host = field(default_factory=Host)
 
     def __repr__(self) -> str:
         parts = (
@@ -166,6 +168,11 @@ class System:
             return frozenset((task,))
         thread = own.place.thread
         return frozenset(each.task for each in self.executors if each.place is not None and each.place.thread == thread)
+
+    @cached_property
+    def callback_of_host_event(self) -> Mapping[str, HostCallback]:
+        """The callbacks of the host, by the custom events that stand for them in chains."""
+        return {f"{each.name}_{moment}": each for each in self.host.callbacks for moment in ("activation", "start", "finish")}
 
     @cached_property
     def transmissions(self) -> Mapping[str, Transmission]:

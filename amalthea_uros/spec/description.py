@@ -9,6 +9,7 @@ from pydantic import Field
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.hardware import HardwareSection
+from amalthea_uros.spec.host import HostSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.processes import IsrSection, LabelSection, TaskSection
@@ -32,6 +33,8 @@ class Description(DescriptionSection):
     """The generic micro-ROS model."""
     application: Application = Field(default_factory=Application.model_construct)
     """The micro-ROS application."""
+    host: HostSection | None = None
+    """The host with ROS 2 at the other end of the transport."""
     tasks: list[TaskSection] = Field(default_factory=list)
     """Tasks of the controller that are not part of the micro-ROS application."""
     isrs: list[IsrSection] = Field(default_factory=list)

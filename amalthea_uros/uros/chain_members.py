@@ -15,7 +15,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk
 from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, ProcessEvent
-from amalthea_uros.perf.network import Direction, Network, Purpose
+from amalthea_uros.perf.network import Direction, Network, Purpose, plain_topic
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.uros.application.callbacks import Callback, body_name
 from amalthea_uros.uros.assembly.context import AssemblyContext
@@ -150,9 +150,9 @@ class Topics:
         senders: dict[str, list[str]] = {}
         for callback in callbacks:
             if callback.incoming is not None:
-                receivers.setdefault(_plain(callback.incoming.topic), []).append(callback.name)
+                receivers.setdefault(plain_topic(callback.incoming.topic), []).append(callback.name)
             for message in callback.outgoing:
-                senders.setdefault(_plain(message.topic), []).append(callback.name)
+                senders.setdefault(plain_topic(message.topic), []).append(callback.name)
         return cls(receivers, senders, network)
 
     @property
@@ -161,7 +161,7 @@ class Topics:
         return {*self.receivers, *self.senders}
 
     def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and _plain(name) in self.names
+        return isinstance(name, str) and plain_topic(name) in self.names
 
     def sent(self, topic: str, before: str, location: Location | None) -> MessageOfTopic:
         """The message of a topic that a path goes along after a member.
@@ -179,12 +179,12 @@ class Topics:
         ------
         ReadError : no callback receives it, or several, and the path does not go on with one of them.
         """
-        named = next((name for name in after if name in self.receivers.get(_plain(topic), ())), "")
+        named = next((name for name in after if name in self.receivers.get(plain_topic(topic), ())), "")
         return self._message(topic, self._one(topic, self.receivers, named, location), Direction.TO_CONTROLLER)
 
     def _one(self, topic: str, callbacks: Mapping[str, Sequence[str]], named: str, location: Location | None) -> str:
         """The callback that is meant: the one of a name, or the only one."""
-        candidates = callbacks.get(_plain(topic), ())
+        candidates = callbacks.get(plain_topic(topic), ())
         verb, end = ("publishes", "begin") if callbacks is self.senders else ("receives", "end")
         if not candidates:
             raise topic_error(f"no callback {verb} {topic!r}", location, f"Let the path {end} with {topic!r}, or remove it.")
@@ -196,14 +196,14 @@ class Topics:
 
     def _message(self, topic: str, callback: str, direction: Direction) -> MessageOfTopic:
         is_received = direction is Direction.TO_CONTROLLER
-        name = f"{_plain(topic)}_{'received' if is_received else 'sent'}_by_{callback}"
+        name = f"{plain_topic(topic)}_{'received' if is_received else 'sent'}_by_{callback}"
         for each in self.network.transmissions:
-            is_same = (each.direction, each.callback, _plain(each.topic or "")) == (direction, callback, _plain(topic))
+            is_same = (each.direction, each.callback, plain_topic(each.topic or "")) == (
+                direction,
+                callback,
+                plain_topic(topic),
+            )
             if is_same and each.purpose is Purpose.DATA:
                 change = ProcessChange.ACTIVATE if is_received else ProcessChange.TERMINATE
                 return MessageOfTopic(ProcessEvent(name=name, process=each.name, change=change), callback, each.processes)
         return MessageOfTopic(CustomEvent(name=name), callback)
-
-
-def _plain(topic: str) -> str:
-    return topic.removeprefix("/")

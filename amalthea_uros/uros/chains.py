@@ -10,6 +10,8 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.errors import ReadError, UnknownError
 from amalthea_uros.perf import events as perf
 from amalthea_uros.perf.constraints import LatencyConstraint, LatencyKind
+from amalthea_uros.perf.host import HOST_EVENT, HostCallback
+from amalthea_uros.perf.network import plain_topic
 from amalthea_uros.perf.software import Label
 from amalthea_uros.spec.requirements import Chain, Moment
 from amalthea_uros.timing.dataflow.links import Dataflow
@@ -42,6 +44,17 @@ class ChainBuilder:
     events: dict[str, perf.Event] = field(default_factory=dict)
     chains: dict[str, perf.EventChain] = field(default_factory=dict)
     _seen: set[str] = field(default_factory=set)
+
+    @property
+    def host(self) -> Mapping[str, HostCallback]:
+        """The callbacks of the host, which a path can contain, too."""
+        return {callback.name: callback for callback in self.dataflow.system.host.callbacks}
+
+    @property
+    def host_topics(self) -> frozenset[str]:
+        """The topics between callbacks of the host."""
+        published = {topic for callback in self.host.values() for topic in callback.publishes}
+        return frozenset(published & {callback.topic for callback in self.host.values() if callback.topic is not None})
 
     @property
     def labels(self) -> Mapping[str, Label]:
@@ -106,7 +119,7 @@ class ChainBuilder:
                 return None
         unknown = [index for index in range(len(path)) if not self._is_known(path[index])]
         for index in unknown:
-            defined = {*self.elements, *self.labels, *self.topics.names}
+            defined = {*self.elements, *self.labels, *self.topics.names, *self.host}
             kind = "topic" if path[index].startswith("/") else "process, runnable or label"
             self.notes.undefined(kind, path[index], defined, place(index))
         if unknown:
@@ -135,10 +148,11 @@ class ChainBuilder:
         return names
 
     def _is_known(self, name: str) -> bool:
-        return name in self.elements or name in self.labels or name in self.topics
+        return name in self.elements or name in self.labels or name in self.host or self._is_topic(name)
 
     def _is_topic(self, name: str) -> bool:
-        return name in self.topics and name not in self.elements and name not in self.labels
+        is_topic = name in self.topics or plain_topic(name) in self.host_topics
+        return is_topic and name not in self.elements and name not in self.labels and name not in self.host
 
     def _is_label(self, name: str) -> bool:
         return name in self.labels and name not in self.elements
@@ -148,7 +162,9 @@ class ChainBuilder:
     ) -> Iterator[str]:
         """The events of a member of a path."""
         name = path[index]
-        if self._is_topic(name):
+        if name in self.host:
+            yield from self._host_events(name, is_first=index == 0)
+        elif self._is_topic(name):
             yield from self._topic_events(section, path, index, place)
         elif index == 0:
             yield self._event_at(name, section.start)
@@ -170,15 +186,16 @@ class ChainBuilder:
         ReadError : it is not clear which message is meant.
         """
         topic, rest = path[index], path[index + 1 :]
-        if index > 0:
-            sent = self.topics.sent(topic, path[index - 1], section.location())
-            if sent.callback in path[: index - 1]:
+        is_to_host = bool(rest) and rest[0] in self.host
+        if not (index > 0 and path[index - 1] in self.host) and (index > 0 or is_to_host):
+            sent = self.topics.sent(topic, path[index - 1] if index else "", section.location())
+            if sent.callback in path[: max(0, index - 1)]:
                 message = f"{path[index - 1]!r} does not publish {topic!r}"
                 raise topic_error(message, section.location(), f"Add the topic to the path after {sent.callback!r}.")
-            if sent.callback != path[index - 1]:
+            if index and sent.callback != path[index - 1]:
                 yield self._event_at(sent.callback, "finish")
             yield self._message_event(sent, topic, place(index))
-        if not rest:
+        if not rest or is_to_host:
             return
         received = self.topics.received(topic, rest, section.location())
         yield self._message_event(received, topic, place(index))
@@ -192,6 +209,13 @@ class ChainBuilder:
             yield self._event_at(receiver.taken_by or "", "finish")
         if received.callback not in rest:
             yield self._event_at(received.callback, "finish")
+
+    def _host_events(self, name: str, is_first: bool) -> Iterator[str]:
+        """The events that stand for a callback of the host."""
+        for moment in ("start", "finish") if is_first else ("finish",):
+            event = perf.CustomEvent(name=f"{name}_{moment}", kind=HOST_EVENT)
+            self.events.setdefault(event.name, event)
+            yield event.name
 
     def _message_event(self, message: MessageOfTopic, topic: str, location: Location | None) -> str:
         if not message.is_on_wire:

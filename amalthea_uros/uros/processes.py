@@ -14,6 +14,7 @@ from amalthea_uros.uros.background_tasks import add_background_tasks
 from amalthea_uros.uros.callback_tasks import add_callbacks
 from amalthea_uros.uros.executors.activation import is_triggered, iteration_trigger_name
 from amalthea_uros.uros.executors.sleeps import check_sleeps
+from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.middleware.checks import check_middleware
 from amalthea_uros.uros.middleware.options import Option, check_options
 from amalthea_uros.uros.network.classic_bus import BusMessage, add_interrupt, bus_messages, check_bus_load, check_identifiers
@@ -76,6 +77,7 @@ def add_processes(context: AssemblyContext, options: Sequence[Option], database:
     check_options(options, middleware, notes)
     check_middleware(callbacks, context.profile, notes)
     context.channels = internal_channels(callbacks)
+    context.host = host_of(description, notes)
     choices = add_callbacks(context, callbacks)
     wakes = [iteration_trigger_name(each.name) for each in context.executors if is_triggered(each)]
     network = planned_network(context, callbacks, wakes, database)
@@ -85,7 +87,7 @@ def add_processes(context: AssemblyContext, options: Sequence[Option], database:
     add_background_tasks(context)
     add_overheads(context)
     check_sleeps(description, notes)
-    if not context.processes and not notes.has_errors:
+    if not context.processes and description.host is None and not notes.has_errors:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
         notes.error("APP009", message, description.location(), advice)

@@ -79,6 +79,7 @@ def _without_demands(context: AssemblyContext, labels: Sequence[Label]) -> Syste
             placements=tuple(_placements(labels, context)),
         ),
         executors=tuple(context.executors),
+        host=context.host,
     )
 
 

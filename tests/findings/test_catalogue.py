@@ -96,7 +96,7 @@ def reported(example, family, folder):
             case "GEN":
                 (folder / "colcon.meta").write_text(example)
                 return check_colcon_meta(ROOT / "samples" / "rclc-in-executor.yaml", folder / "colcon.meta").findings
-            case "CHN" | "EXE":
+            case "CHN" | "EXE" | "HST":
                 path = folder / "app.yaml"
                 path.write_text(example)
                 described = describe(path)

@@ -12,15 +12,18 @@ from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
+from amalthea_uros.analyze.chains.host_hops import HostHops
 from amalthea_uros.analyze.chains.message_hops import CallbackHops, task_hop
 from amalthea_uros.analyze.chains.segments import (
     CallbackSegment,
     ChainSegment,
     EntryKind,
+    HostSegment,
     Segments,
     TaskSegment,
     name_of,
 )
+from amalthea_uros.analyze.host.evaluate import evaluate_host
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
@@ -46,23 +49,27 @@ _POLLED = "{!r} takes each message in the first job that is activated after the 
 _THERE_AND_BACK = "a message that comes back takes 'to_host' and 'to_controller' in the agent at most"
 
 
-def evaluate_executors_and_messages(solution: Solution) -> tuple[Results[ExecutorResult], Results[ChainResult]]:
-    """The results of all executors in loops, and of all chains that cross them, wires or the agent.
+def evaluate_executors_and_messages(
+    solution: Solution,
+) -> tuple[Results[ExecutorResult], Results[ChainResult], Results[ExecutorResult]]:
+    """The results of all executors in loops, of all chains that cross them, wires, the agent or the host, and of executors of the host.
 
     Parameters
     ----------
     solution : for unknown phases, in which any job can take what comes from outside
     """
-    jitter, sending = arrival_jitter(solution), sending_times(solution)
+    jitter, sending, host = arrival_jitter(solution), sending_times(solution), evaluate_host(solution)
     executors = Results(evaluate_executors(solution, sending=sending, extra_jitter=jitter))
     system = solution.context.system
-    evaluator = MessageChains(ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending)
+    evaluator = MessageChains(
+        ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending, HostHops(host, solution)
+    )
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
     crossing = [chain for chain in system.events.chains if crosses(chain, solution.context.dataflow)]
     chains = Results(evaluator.chain(chain) for chain in sorted(crossing, key=lambda chain: chain.name not in limited))
     for result in chains:
         _note(result, solution)
-    return executors, chains
+    return executors, chains, host.executors
 
 
 def _note(result: ChainResult, solution: Solution) -> None:
@@ -88,6 +95,7 @@ class MessageChains:
     evaluator: ChainEvaluator
     callbacks: CallbackHops
     sending: Mapping[str, Span]
+    host: HostHops
     segments: Segments = field(init=False)
 
     def __post_init__(self) -> None:
@@ -146,6 +154,8 @@ class MessageChains:
                     hops += self._message(before, transmission, hops)
                 case CallbackSegment():
                     hops += self._callback(before, segment)
+                case HostSegment():
+                    hops += self.host.of(before, segment)
                 case TaskSegment():
                     entry = self.segments.entry(before, segment)
                     if entry is EntryKind.POLLING:
@@ -157,7 +167,9 @@ class MessageChains:
         agent, topic = agent_hop(transmission, self.solution), transmission.topic
         if transmission.direction is Direction.TO_CONTROLLER:
             is_from_host = isinstance(before, Transmission) and before.direction is Direction.TO_AGENT
-            if before is not None and not is_from_host:
+            if isinstance(before, HostSegment):
+                yield self.host.leaving(before, transmission)
+            elif before is not None and not is_from_host:
                 raise UnknownError(f"{name_of(before)!r} sends nothing that the agent forwards to {topic!r}")
             yield agent
             yield from received(transmission, self.solution)
@@ -169,6 +181,8 @@ class MessageChains:
                 hops[-1] = _until_sent(hops[-1], self.sending[transmission.name], self._least_sending(before))
             case Transmission():
                 raise UnknownError(f"{name_of(before)!r} sends nothing")
+            case HostSegment():
+                raise UnknownError(f"{name_of(before, is_end=True)!r} of the host does not send {topic!r} on the wire")
             case TaskSegment() if not self.segments.activates(before, transmission.name):
                 raise UnknownError(f"{name_of(before, is_end=True)!r} does not publish {topic!r}")
         yield from sent(transmission, self.solution)
@@ -182,7 +196,7 @@ class MessageChains:
         if isinstance(before, TaskSegment) and before.processes[-1] in passed:
             for name in passed[passed.index(before.processes[-1]) + 1 :]:
                 yield process_hop(name, self.solution)
-        elif isinstance(before, CallbackSegment | TaskSegment):
+        elif isinstance(before, CallbackSegment | TaskSegment | HostSegment):
             self.segments.entry(before, segment)
             yield self.callbacks.sampling(segment)
             return
@@ -221,6 +235,8 @@ class MessageChains:
                 and isinstance(before, Transmission | TaskSegment)
             ):
                 yield from filter(None, [self.callbacks.loss(segment)])
+            elif isinstance(segment, HostSegment):
+                yield from self.host.losses(segment)
             before = segment
 
 

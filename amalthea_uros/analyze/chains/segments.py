@@ -11,6 +11,7 @@ from amalthea_uros.executors.results import HopKind
 from amalthea_uros.executors.semantics.callbacks import handle_around, taker
 from amalthea_uros.perf.events import CustomEvent, Event, EventChain, RunnableChange, RunnableEvent
 from amalthea_uros.perf.executors import Executor, Handle
+from amalthea_uros.perf.host import HostCallback
 from amalthea_uros.perf.network import Transmission
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.dataflow.chains import sequences, unfold
@@ -35,8 +36,15 @@ class TaskSegment:
     processes: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class HostSegment:
+    """Callbacks of the host, which follow each other."""
+
+    callbacks: tuple[HostCallback, ...]
+
+
 #: A message on a wire is a segment by itself.
-ChainSegment: TypeAlias = Transmission | CallbackSegment | TaskSegment
+ChainSegment: TypeAlias = Transmission | CallbackSegment | TaskSegment | HostSegment
 
 
 class EntryKind(Enum):
@@ -62,6 +70,8 @@ def name_of(segment: ChainSegment, *, is_end: bool = False) -> str:
             return handle.name
         case TaskSegment(_, processes):
             return processes[-1 if is_end else 0]
+        case HostSegment(callbacks):
+            return callbacks[-1 if is_end else 0].name
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,12 +96,19 @@ class Segments:
             segment = self._segment(self.context.system.events_by_name[name], before)
             if isinstance(segment, TaskSegment) and isinstance(before, TaskSegment):
                 segments[-1] = TaskSegment((*before.events, *segment.events), (*before.processes, *segment.processes))
+            elif isinstance(segment, HostSegment) and isinstance(before, HostSegment):
+                segments[-1] = HostSegment(tuple(dict.fromkeys((*before.callbacks, *segment.callbacks))))
             elif segment != before:
                 segments.append(segment)
         return self._with_takers(segments)
 
     def _segment(self, event: Event, before: ChainSegment | None) -> ChainSegment:
         """Where an event occurs; if that can be in several places, the segment before it if it is one of these."""
+        if (
+            isinstance(event, CustomEvent)
+            and (callback := self.context.system.callback_of_host_event.get(event.name)) is not None
+        ):
+            return HostSegment((callback,))
         try:
             occurrences = self.context.dataflow.events.of(event)
         except UnknownError as error:
@@ -147,6 +164,10 @@ class Segments:
         """
         if before is None:
             return EntryKind.FIRST
+        if isinstance(before, HostSegment):
+            raise UnknownError(
+                f"a message takes the effect from {name_of(before, is_end=True)!r} over the agent; add its topic to the path"
+            )
         if isinstance(segment, TaskSegment):
             if isinstance(before, Transmission):
                 # The last process that it passes may activate the next one.

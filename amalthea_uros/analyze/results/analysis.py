@@ -34,6 +34,7 @@ class Analysis(Shown):
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
     summary : whether everything is met, and what is missed or unknown
     executors : those that spin in loops
+    host : the executors of the host
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
     """
@@ -50,6 +51,7 @@ class Analysis(Shown):
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
     executors: Results[ExecutorResult] = field(default_factory=Results)
+    host: Results[ExecutorResult] = field(default_factory=Results)
 
     def __repr__(self) -> str:
         parts = [counted(len(self.processes), "process"), counted(len(self.chains), "chain")]

@@ -1,7 +1,7 @@
-"""Executors and the network, as custom properties: AMALTHEA has no classes for them.
+"""Executors, the network and the host, as custom properties: AMALTHEA has no classes for them.
 
-An executor is a property of the task that executes its rounds, a transmission of the task that stands for it, and the wires are a
-property of the software model. Other tools ignore them.
+An executor is a property of the task that executes its rounds, a transmission of the task that stands for it, and the wires and the
+host are properties of the software model. Other tools ignore them.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.host import Host, HostExecutor, HostPolicy
 from amalthea_uros.perf.network import BILLION, MOST_LOST, Losses, Network, Purpose, Recovery, Transmission
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.perf.system import System
@@ -25,10 +26,11 @@ from amalthea_uros.perf.system import System
 T = TypeVar("T")
 
 _EXECUTOR, _TRANSMISSION, _NETWORK = "amuros.executor", "amuros.transmission", "amuros.network"
+_HOST = "amuros.host"
 
 
 def build_middleware(system: System, software: am.SWModel, context: Building) -> None:
-    """Set the properties of all executors and of the network."""
+    """Set the properties of all executors, of the network and of the host."""
     for executor in system.executors:
         context.at(executor)
         _attach(context.find(ObjectKind.PROCESS, executor.task), _EXECUTOR, to_text(executor, without=("task",)))
@@ -38,6 +40,8 @@ def build_middleware(system: System, software: am.SWModel, context: Building) ->
     network = replace(system.network, transmissions=())
     if network != Network():
         _attach(software, _NETWORK, to_text(network))
+    if system.host != Host():
+        _attach(software, _HOST, to_text(system.host))
 
 
 def _attach(element: Any, key: str, text: str) -> None:
@@ -84,6 +88,40 @@ def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], syst
         context,
     )
     return replace(network, transmissions=tuple(map(_with_acknowledged, transmissions)))
+
+
+def extract_host(models: Iterable[am.SWModel], context: Extracting) -> Host:
+    """The host; the one of the last file that has one."""
+    hosts = list(_extracted(models, _HOST, lambda _, text: from_text(Host, text), _flaw_of_host, context))
+    return hosts[-1] if hosts else Host()
+
+
+def _flaw_of_host(host: Host) -> str | None:
+    """What no description can state, and would make bounds too low or an analysis fail."""
+    computers = {computer.name for computer in host.computers}
+    names = [callback.name for callback in host.callbacks]
+    if len(set(names)) < len(names):
+        return "two callbacks of the host have one name"
+    if any(computer.cores < 1 for computer in host.computers):
+        return "a computer has no core"
+    flaws = [
+        _missing("computer", (executor.computer for executor in host.executors), computers),
+        *map(_flaw_of_host_executor, host.executors),
+    ]
+    return next(filter(None, flaws), None)
+
+
+def _flaw_of_host_executor(executor: HostExecutor) -> str | None:
+    thread = executor.thread
+    if thread.policy is HostPolicy.DEADLINE and not 0 < thread.budget <= thread.period:
+        return f"the budget of {executor.name!r} is not within its period"
+    if executor.threads < 1:
+        return f"{executor.name!r} has no thread"
+    for callback in executor.callbacks:
+        spans = callback.execution.least < 0 or (callback.execution.most or 1) < max(1, callback.execution.least)
+        if spans or (callback.period is None) is (callback.topic is None) or (callback.period or 1) < 1 or callback.depth < 1:
+            return f"the callback {callback.name!r} is not valid"
+    return None
 
 
 def _with_acknowledged(transmission: Transmission) -> Transmission:

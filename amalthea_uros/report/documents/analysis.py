@@ -55,6 +55,7 @@ from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, time_text
 
 BAR = 20
+_HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
 _CALLBACKS = "Callbacks (from the activation of the process to the end of the callback)"
 _EFFECTS = {Effect.BETTER: Tone.GOOD, Effect.WORSE: Tone.BAD, Effect.UNKNOWN: Tone.UNKNOWN}
 
@@ -71,6 +72,7 @@ def analysis_document(result: AnalysisResult) -> Document:
             section(NEEDS_HEADING, execution_times(analysis)),
             section(_CALLBACKS, callbacks(analysis.of_periodic_executors)),
             *map(_executor, analysis.executors),
+            *map(_host_executor, analysis.host),
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),
             section(CHAINS_HEADING, _chains(analysis.chains)),
             section("Requirements", _requirements(analysis)),
@@ -249,6 +251,32 @@ def _executor(executor: ExecutorResult) -> Section:
         Sentences([executor.reason or loop]),
         handles(executor),
         Sentences(losses),
+    )
+
+
+def _host_executor(executor: ExecutorResult) -> Section:
+    """The callbacks of an executor of the host, by which method, and what can be lost."""
+    losses = [
+        f"{each.name} can lose {each.lost.what}: {each.lost.sequence}" for each in executor.handles if each.lost is not None
+    ]
+    return section(
+        f"Executor {executor.name} of the host (from the arrival of a message, or when a timer is due, to the end of the callback)",
+        Sentences([executor.reason] if executor.reason else []),
+        table(f"Executor {executor.name} of the host", _HOST_COLUMNS, map(_host_row, executor.handles)),
+        Sentences(losses),
+    )
+
+
+def _host_row(handle: HandleResult) -> tuple[Cell, ...]:
+    lost, response = "-" if handle.lost is None else handle.lost.what, handle.response
+    method = f"{response.method} ({response.source})" if response.worst is not None else UNKNOWN
+    return (
+        handle.name,
+        handle.kind.value,
+        exactly(handle.interval, "-"),
+        *response_ends(response, handle.interval),
+        lost,
+        method,
     )
 
 

@@ -73,6 +73,7 @@ declare(
     ("processes", "analysis.processes"),
     ("callbacks", "analysis.callbacks"),
     ("executors", "analysis.executors"),
+    ("host", "analysis.host"),
     ("chains", _chains),
     ("requirements", "analysis.requirements"),
     ("summary", lambda result: summary_json(result.analysis)),

@@ -29,6 +29,7 @@ from amalthea_uros.units import Time
 #: Assumptions.
 _DELAYS = "times in the agent, in switches and in drivers are uniform between their limits, and keep the order of messages"
 _MEANS = "where only the mean of a time in the agent is known, every message takes it"
+_HOST = "the host is not simulated: its messages come at the interval and with the jitter that the controller states"
 _AT_ONCE = Span(most=0)
 
 
@@ -104,6 +105,8 @@ class MessageRecords:
             assume(f"no message is lost on {transmission.wire!r}, or dropped because another thread is sending")
         if relayed(transmission, self.system):
             assume(f"messages of {transmission.topic!r} come only from the publishers that are described")
+        if self.system.host.executors:
+            assume(_HOST)
 
     def _handle(self, executor: Executor, handle: Handle) -> int:
         kind = {HandleKind.TIMER: layout.TIMER, HandleKind.GUARD_CONDITION: layout.FLAG}.get(handle.kind, layout.RECEIVER)

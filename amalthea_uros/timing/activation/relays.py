@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros.perf.executors import Handle
-from amalthea_uros.perf.network import Direction, Purpose, Transmission
+from amalthea_uros.perf.network import Direction, Purpose, Transmission, plain_topic
 from amalthea_uros.perf.system import System
 
 
@@ -20,6 +20,10 @@ def relayed(transmission: Transmission, system: System) -> list[Transmission]:
 
 
 def comes_regularly(handle: Handle, system: System) -> bool:
-    """Whether messages of a handle come for certain, one in each interval: the host publishes them, and nobody here."""
+    """Whether messages of a handle come for certain, one in each interval: nothing described publishes them."""
     transmission = system.transmissions.get(handle.transmission or "")
-    return handle.is_periodic and (transmission is None or not relayed(transmission, system))
+    if transmission is None:
+        return handle.is_periodic
+    # Callbacks of the host can skip periods and lose messages.
+    is_of_host = any(plain_topic(transmission.topic) in callback.publishes for callback in system.host.callbacks)
+    return handle.is_periodic and not is_of_host and not relayed(transmission, system)

@@ -161,13 +161,15 @@ def route_text(route: Route) -> str:
 def crosses(chain: EventChain, dataflow: Dataflow) -> bool:
     """Whether a chain passes a wire or an executor that loops, so that its latency is a sum of message hops."""
     system = dataflow.system
-    if not system.executors and not system.transmissions:
+    if not system.executors and not system.transmissions and not system.host.executors:
         return False
     try:
         unfolded = unfold(chain, system)[0]
         names = {name for path in sequences(unfolded) for name in path}
     except UnknownError:
         return False  # the analysis of chains reports it
+    if names & system.callback_of_host_event.keys():
+        return True
     crossing = system.transmissions.keys() | system.executor_of_task.keys()
     for name in names & system.events_by_name.keys():
         with suppress(UnknownError):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Call, Trigger
 from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.host import Host
 from amalthea_uros.perf.software import Channel, Runnable
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.transports import Interrupt
@@ -50,6 +51,7 @@ class AssemblyContext:
     runnables: dict[str, Runnable] = field(default_factory=dict)
     channels: Mapping[str, Channel] = field(default_factory=dict)
     executors: list[Executor] = field(default_factory=list)
+    host: Host = field(default_factory=Host)
     assumptions: tuple[str, ...] = ()
 
     @property

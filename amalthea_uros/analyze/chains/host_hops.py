@@ -1,0 +1,146 @@
+"""The hops of a chain on the host: callbacks that wake each other within an executor, topics, and variables that a callback reads.
+
+Within an executor, one bound holds for the whole route (D. Casini et al., ECRTS 2019, section 5); that of each callback can be less in
+sum, so that the smaller one counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from amalthea_uros.analyze.chains.segments import ChainSegment, HostSegment, name_of
+from amalthea_uros.analyze.host.handover import violated
+from amalthea_uros.analyze.host.results import HostResults
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.bounds.solved_system import SolvedSystem
+from amalthea_uros.executors.results import HandleResult, Hop, HopKind
+from amalthea_uros.perf.host import HostCallback
+from amalthea_uros.perf.network import Direction, Transmission, plain_topic
+from amalthea_uros.units import Time
+
+_ROUTE_METHOD = "latency of the route in its executor (Casini et al. 2019)"
+
+
+@dataclass(frozen=True, slots=True)
+class HostHops:
+    """The hops on the host.
+
+    Attributes
+    ----------
+    solved : the controller
+    """
+
+    host: HostResults
+    solved: SolvedSystem
+
+    def of(self, before: ChainSegment | None, segment: HostSegment) -> Iterator[Hop]:
+        """From the end of the segment before to the end of the last callback.
+
+        Raises
+        ------
+        UnknownError : no data flow or trigger connects them.
+        """
+        first = segment.callbacks[0]
+        if isinstance(before, Transmission):
+            if before.direction is not Direction.TO_AGENT or plain_topic(before.topic) != first.topic:
+                raise UnknownError(f"{first.name!r} does not subscribe to {name_of(before)!r}")
+            yield self._topic(first.topic or "")
+        elif before is not None:
+            raise UnknownError(
+                f"a message takes the effect from {name_of(before)!r} to {first.name!r}; add its topic to the path"
+            )
+        route = [first]
+        for one, other in pairwise(segment.callbacks):
+            if self.host.releases.topics.source(other) == one:
+                route.append(other)
+                continue
+            if route:
+                yield self._route(route)
+            if other.topic is not None and other.topic in one.publishes:
+                yield self._topic(other.topic)
+                route = [other]
+            elif set(one.writes) & set(other.reads):
+                yield self._sampling(other)
+                route = []
+            else:
+                raise UnknownError(f"no topic or variable connects {one.name!r} to {other.name!r}")
+        if route:
+            yield self._route(route)
+
+    def leaving(self, segment: HostSegment, transmission: Transmission) -> Hop:
+        """From the last callback to the agent.
+
+        Raises
+        ------
+        UnknownError : it does not publish the topic, or its messages are not as stated.
+        """
+        topic, last = plain_topic(transmission.topic), segment.callbacks[-1]
+        if topic not in last.publishes:
+            raise UnknownError(f"{last.name!r} does not publish {topic!r}")
+        if difference := violated(transmission, self.host.releases):
+            raise UnknownError(difference)
+        return self._topic(topic)
+
+    def losses(self, segment: HostSegment) -> Iterator[str]:
+        """How messages can be lost on the path of a chain."""
+        for callback in segment.callbacks:
+            lost = self._result(callback).lost
+            if lost is not None and callback.topic is not None:
+                yield f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}"
+
+    def _result(self, callback: HostCallback) -> HandleResult:
+        executor = self.host.releases.topics.executor_of[callback.name]
+        return self.host.executors[executor.name].handles[callback.name]
+
+    def _topic(self, topic: str) -> Hop:
+        latency = self.host.releases.topics.latency(topic)
+        if latency.most is None:
+            reason = f"the latency of the topic {topic!r} is not specified"
+            remedy = f"Measure it, and set 'latency' of {topic!r} under 'topics' of the host."
+            return Hop(kind=HopKind.TOPIC, name=f"/{topic}", best=latency.least, reason=reason, remedy=remedy)
+        return Hop(kind=HopKind.TOPIC, name=f"/{topic}", best=latency.least, worst=latency.most, source="stated")
+
+    def _route(self, route: Sequence[HostCallback]) -> Hop:
+        """From the release of the first callback to the end of the last one, in one executor."""
+        releases = self.host.releases
+        executor, best = releases.topics.executor_of[route[0].name].name, sum(each.execution.least for each in route)
+        responses = [self._result(each).response for each in route]
+        unknown = next((each for each in responses if each.worst is None), None)
+        name = f"{executor}: {', '.join(each.name for each in route)}"
+        if unknown is not None:
+            reason = (
+                f"the response time of {route[responses.index(unknown)].name!r} in {executor!r} has no bound: {unknown.reason}"
+            )
+            remedy = f"See the results of the executor {executor!r}."
+            return Hop(kind=HopKind.HOST, name=name, best=best, reason=reason, remedy=remedy)
+        hop_by_hop, whole = sum(each.worst or 0 for each in responses), self._whole(route)
+        method = f"response time: {responses[0].method} ({responses[0].source})"
+        source = (method if len(route) == 1 else "sum of response times") if hop_by_hop <= whole else _ROUTE_METHOD
+        parts = self._result(route[0]).terms if len(route) == 1 and hop_by_hop <= whole else ()
+        return Hop(kind=HopKind.HOST, name=name, best=best, worst=min(hop_by_hop, whole), source=source, parts=parts)
+
+    def _whole(self, route: Sequence[HostCallback]) -> Time:
+        releases = self.host.releases
+        before = releases.best(route[0]) - route[0].execution.least
+        return (releases.latencies[route[-1].name].worst or 0) - before
+
+    def _sampling(self, callback: HostCallback) -> Hop:
+        """From the write of a variable to the end of the callback that reads it at its next call.
+
+        A timer keeps its grid: the next time at which it is due is at most a period later, and a call at or after that time reads the
+        variable, also if periods are skipped.
+        """
+        response = self._result(callback).response
+        executor = self.host.releases.topics.executor_of[callback.name].name
+        name = f"{executor}: {callback.name}"
+        if callback.period is None:
+            reason = f"the time between two messages of {callback.name!r} has no maximum"
+            remedy = "Read the variable in a timer, or let the path begin with the topic of the callback."
+            return Hop(kind=HopKind.SAMPLING, name=name, best=0, reason=reason, remedy=remedy)
+        if response.worst is None:
+            reason = f"the response time of {callback.name!r} in {executor!r} has no bound: {response.reason}"
+            return Hop(kind=HopKind.SAMPLING, name=name, best=0, reason=reason, remedy=f"See the results of {executor!r}.")
+        worst, source = callback.period + response.worst, f"period and response time of {callback.name}"
+        return Hop(kind=HopKind.SAMPLING, name=name, best=0, worst=worst, source=source)

@@ -1,0 +1,136 @@
+"""The messages that the host sends to the controller: how often they really come, instead of what a subscription states.
+
+A subscription on a controller states an interval and a jitter. If callbacks of the host publish its topic, both follow from these: the
+controller is analysed with the interval of the host, and with the greater jitter. What the controller sends depends on that in turn,
+so that both sides are analysed until nothing changes (K. Richter 2005).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from amalthea_uros.analyze.host.releases import HostReleases
+from amalthea_uros.analyze.host.topics import HostTopics, delayed
+from amalthea_uros.analyze.response_times.propagation import solve
+from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.loops import timing_context
+from amalthea_uros.perf.distributions import Uniform
+from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
+from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, aggregated
+from amalthea_uros.units import Time, time_text
+
+#: If the jitter still grows after so many analyses of both sides, the last difference is reported.
+_MAX_PASSES = 30
+
+
+def solve_with_host(system: System, settings: Settings) -> Solution:
+    """The solution in which messages of the host come as the host sends them; what was stated otherwise becomes a finding."""
+    solution = solve(timing_context(system, settings))
+    stated = solution.context.system
+    for _ in range(_MAX_PASSES if stated.host.executors else 0):
+        releases = HostReleases(HostTopics(stated.host, solution)).solve()
+        system = solution.context.system
+        for transmission in handed_over(releases):
+            system = _with_real_times(system, transmission, releases)
+        if system is solution.context.system:
+            break
+        solution = solve(timing_context(system, settings))
+    _note_changes(stated, solution)
+    return solution
+
+
+def _note_changes(stated: System, solution: Solution) -> None:
+    handles = {handle.name: handle for executor in solution.context.system.executors for handle in executor.handles}
+    for before in (handle for executor in stated.executors for handle in executor.handles):
+        after = handles[before.name]
+        if (before.interval, before.jitter) != (after.interval, after.jitter):
+            interval, jitter = time_text(after.interval or 0), time_text(after.jitter)
+            message = (
+                f"the host sends the messages of {before.name!r} every {interval} with a jitter of up to {jitter}, which is used "
+                "instead of what the subscription states"
+            )
+            solution.context.notes.warning("HST003", message, before)
+
+
+def handed_over(releases: HostReleases) -> list[Transmission]:
+    """The messages that the host sends to the controller."""
+    topics = releases.topics
+    return [
+        each
+        for each in topics.solved.context.system.network.transmissions
+        if each.direction is Direction.TO_CONTROLLER
+        and each.purpose is Purpose.DATA
+        and topics.publishers(plain_topic(each.topic))
+    ]
+
+
+def violated(transmission: Transmission, releases: HostReleases) -> str:
+    """How the messages of the host differ from those that were analysed; "" if they do not.
+
+    Raises
+    ------
+    UnknownError : it is not known how often they come.
+    """
+    topic, stated = plain_topic(transmission.topic), releases.topics.solved.event_models.get(transmission.name)
+    real, agent = _sent_by_host(transmission, releases), _agent_jitter(transmission)
+    if not isinstance(real, PeriodicEvents) or not isinstance(stated, PeriodicEvents):
+        return f"more than one publisher sends {topic!r}, so that the interval of {transmission.callback!r} is not that of the messages"
+    if real.period != stated.period or real.jitter + agent > stated.jitter or stated.min_interarrival:
+        times = f"every {time_text(real.period)} with a jitter of up to {time_text(real.jitter)}"
+        return f"the host sends {topic!r} {times}, for which the controller is not analysed"
+    return ""
+
+
+def _sent_by_host(transmission: Transmission, releases: HostReleases) -> EventModel:
+    """The messages when they reach the agent.
+
+    Raises
+    ------
+    UnknownError : their number has no bound.
+    """
+    topic, topics = plain_topic(transmission.topic), releases.topics
+    events = [releases.published(each) for each in topics.publishers(topic)]
+    # The agent sends back what the controller publishes, too.
+    events += [topics.from_controller(each) for each in topics.transmissions(topic, Direction.TO_AGENT)]
+    return delayed(
+        aggregated(tuple(events)), _spread(topics.latency(topic), f"the latency of the topic {topic!r} is not specified")
+    )
+
+
+def _agent_jitter(transmission: Transmission) -> Time:
+    return _spread(transmission.agent, "the latency of the agent is not specified")
+
+
+def _spread(span: Span, reason: str) -> Time:
+    if span.most is None:
+        raise UnknownError(reason)
+    return span.most - span.least
+
+
+def _with_real_times(system: System, transmission: Transmission, releases: HostReleases) -> System:
+    """The system with the interval and at least the jitter of the host; the same object if it has them already or they are unknown."""
+    try:
+        if not violated(transmission, releases):
+            return system
+        real, agent = _sent_by_host(transmission, releases), _agent_jitter(transmission)
+    except UnknownError:
+        return system
+    stimuli = [each for each in system.stimuli.stimuli if each.name in system.processes[transmission.name].stimuli]
+    handles = [handle for each in system.executors for handle in each.handles if handle.transmission == transmission.name]
+    arriving = stimuli[0] if len(stimuli) == 1 else None
+    # The task of a callback outside executors has a period that was chosen for what is stated.
+    if not handles or not isinstance(arriving, Periodic) or not isinstance(real, PeriodicEvents):
+        return system
+    jitter = max(real.jitter, *(handle.jitter for handle in handles))
+    changed = {handle: replace(handle, interval=real.period, jitter=jitter) for handle in handles}
+    late = Uniform(lower=0, upper=jitter + agent)
+    stimulus = replace(arriving, period=real.period, jitter=late, min_distance=None)
+    executors = tuple(
+        replace(each, handles=tuple(changed.get(handle, handle) for handle in each.handles)) for each in system.executors
+    )
+    others = tuple(stimulus if each is arriving else each for each in system.stimuli.stimuli)
+    return replace(system, executors=executors, stimuli=replace(system.stimuli, stimuli=others))

@@ -1,0 +1,186 @@
+"""How often the callbacks of a host are released, and how long after their chains have entered the executor they end.
+
+A callback whose message is published within the same executor has the activations of the first callback of that chain: so the bound of
+D. Casini et al., ECRTS 2019, section 5, holds for its end, and no jitter adds up from hop to hop. Between executors, and where a topic
+takes time, the jitter is what the times before vary (K. Richter 2005). It is found by iteration from none upwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from amalthea_uros.analyze.host import polled, reentrant
+from amalthea_uros.analyze.host.processor import HostProcessor, processor_of
+from amalthea_uros.analyze.host.topics import HostTopics, delayed
+from amalthea_uros.analyze.response_times.task import AnalysedTask
+from amalthea_uros.errors import UnknownError
+from amalthea_uros.perf.host import HostCallback, HostExecutor, HostExecutorKind
+from amalthea_uros.perf.network import Direction
+from amalthea_uros.timing.basics.time_base import Ticks
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SporadicEvents, aggregated
+from amalthea_uros.timing.response import Response
+from amalthea_uros.units import Time
+
+#: Jitter that still grows after so many passes is considered unbounded.
+_MAX_PASSES = 200
+
+
+@dataclass
+class HostReleases:
+    """The releases of all callbacks of a host.
+
+    Attributes
+    ----------
+    latencies : from the release of the first callback of the route to the end of a callback, by name
+    reasons : why nothing is known of an executor
+    processors : by the names of executors
+    """
+
+    topics: HostTopics
+    latencies: dict[str, Response] = field(default_factory=dict)
+    reasons: dict[str, str] = field(default_factory=dict)
+    processors: dict[str, HostProcessor] = field(default_factory=dict)
+
+    def solve(self) -> HostReleases:
+        """Find the least fixed point, executor by executor; what has none is unknown."""
+        host = self.topics.host
+        for executor in host.executors:
+            try:
+                self.processors[executor.name] = processor_of(executor, host)
+            except UnknownError as error:
+                self.reasons[executor.name] = str(error)
+        for _ in range(_MAX_PASSES):
+            before = self._state()
+            for executor in host.executors:
+                if executor.name not in self.reasons:
+                    self._solve(executor)
+            if self._state() == before:
+                return self
+        for executor in host.executors:
+            self.reasons.setdefault(executor.name, "the jitter of its messages grows from hop to hop without a bound")
+        return self
+
+    def _state(self) -> dict[str, Time | str | None]:
+        return {**{name: each.worst for name, each in self.latencies.items()}, **self.reasons}
+
+    def _solve(self, executor: HostExecutor) -> None:
+        """The latencies of an executor for the present activations."""
+        try:
+            if executor.kind is HostExecutorKind.MULTI_THREADED:
+                self.latencies |= self._of_threads(executor)
+                return
+            processor, tasks = self.processors[executor.name], self.tasks(executor)
+            higher = self.preempting(executor)
+            for task in tasks:
+                others = [other for other in tasks if other is not task]
+                response = polled.response_time(task, others, higher, processor.supply)
+                self.latencies[task.name] = response
+                if response.worst is None:
+                    raise UnknownError(response.reason)
+        except UnknownError as error:
+            self.reasons[executor.name] = str(error)
+
+    def preempting(self, executor: HostExecutor) -> list[AnalysedTask]:
+        """Return the tasks that can preempt the thread of an executor."""
+        processor = self.processors[executor.name]
+        return [*processor.reservations, *(task for other in processor.higher for task in self.tasks(other))]
+
+    def tasks(self, executor: HostExecutor) -> list[AnalysedTask]:
+        """The callbacks of an executor, with the activations of the first callbacks of their routes."""
+        if not executor.callbacks:
+            return []
+        return [self._task(each, self._entering(self.topics.route(each)[0])) for each in executor.callbacks]
+
+    def released(self, executor: HostExecutor) -> list[AnalysedTask]:
+        """The callbacks of an executor, with their own activations."""
+        return [self._task(each, self.events(each)) for each in executor.callbacks]
+
+    def _task(self, callback: HostCallback, events: EventModel) -> AnalysedTask:
+        worst = callback.execution.most
+        if worst is None:
+            raise UnknownError(f"the execution time of {callback.name!r} has no maximum")
+        return AnalysedTask(
+            name=callback.name, events=events, demand=MultiframeDemand.constant(Ticks(worst), Ticks(callback.execution.least))
+        )
+
+    def best(self, callback: HostCallback) -> Time:
+        """The least time from the release of the first callback of the route to the end of a callback."""
+        return sum(each.execution.least for each in self.topics.route(callback))
+
+    def events(self, callback: HostCallback) -> EventModel:
+        """The activations of a callback.
+
+        Raises
+        ------
+        UnknownError : their number has no bound.
+        """
+        *before, _ = self.topics.route(callback)
+        return self.published(before[-1]) if before else self._entering(callback)
+
+    def published(self, callback: HostCallback) -> EventModel:
+        """The ends of a callback, at which it publishes.
+
+        Raises
+        ------
+        UnknownError : their number has no bound.
+        """
+        entering = self._entering(self.topics.route(callback)[0])
+        response, executor = self.latencies.get(callback.name), self.topics.executor_of[callback.name]
+        if executor.name in self.reasons:
+            raise UnknownError(self._depends_on(callback, executor))
+        # Of what was not looked at yet, the least variation is assumed; the iteration continues until all are consistent.
+        late = 0 if response is None or response.worst is None else response.worst - self.best(callback)
+        return delayed(entering, late)
+
+    def _depends_on(self, callback: HostCallback, executor: HostExecutor) -> str:
+        return f"it depends on {callback.name!r} in {executor.name!r}: {self.reasons[executor.name]}"
+
+    def _entering(self, callback: HostCallback) -> EventModel:
+        """The activations of a callback that comes first in its executor."""
+        if callback.period is not None:
+            return PeriodicEvents(callback.period)
+        topic, topics = callback.topic or "", self.topics
+        sources = [self.published(each) for each in topics.publishers(topic)]
+        sources += [topics.from_controller(each) for each in topics.transmissions(topic, Direction.TO_AGENT)]
+        latency, described = topics.latency(topic), topics.described.get(topic)
+        if not sources and described is not None and described.interval is not None:
+            # The jitter is that of the messages in the queue: the times of their publication are unknown.
+            return SporadicEvents(described.interval, described.jitter)
+        if not sources:
+            raise UnknownError(f"nobody that is described publishes {topic!r}; set 'rate' of the topic")
+        if latency.most is None:
+            raise UnknownError(f"the latency of the topic {topic!r} is not specified")
+        return aggregated(tuple(delayed(each, latency.most - latency.least) for each in sources))
+
+    def _of_threads(self, executor: HostExecutor) -> Mapping[str, Response]:
+        """The latencies in a multi-threaded executor.
+
+        Raises
+        ------
+        UnknownError : the theorem does not cover it.
+        """
+        if not all(callback.is_reentrant for callback in executor.callbacks):
+            raise UnknownError(
+                "no published method covers groups that exclude each other in a multi-threaded executor; their callbacks can starve"
+            )
+        routes = [self.topics.route(callback) for callback in executor.callbacks]
+        passed = {each.name for route in routes for each in route[:-1]}
+        ends = [route for route in routes if route[-1].name not in passed]
+        if sum(map(len, ends)) > len(executor.callbacks):
+            raise UnknownError("no published method covers chains that branch in a multi-threaded executor")
+        chains = [self._chain(route) for route in ends]
+        latencies: dict[str, Response] = {}
+        for route, response in zip(ends, reentrant.latencies(chains, executor.threads), strict=True):
+            if response.worst is None:
+                raise UnknownError(response.reason)
+            latencies |= {callback.name: response for callback in route}
+        return latencies
+
+    def _chain(self, route: tuple[HostCallback, ...]) -> reentrant.ReentrantChain:
+        events = self._entering(route[0])
+        if not isinstance(events, PeriodicEvents) or events.jitter:
+            raise UnknownError(f"no published method covers the jitter of {route[0].name!r} in a multi-threaded executor")
+        demands = [self._task(each, events).demand.worst for each in route]
+        return reentrant.ReentrantChain(events.period, sum(demands), demands[-1])

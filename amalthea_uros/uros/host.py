@@ -1,0 +1,175 @@
+"""The host of a description: its computers, executors and topics, with findings about what contradicts itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.host import (
+    Host,
+    HostCallback,
+    HostComputer,
+    HostExecutor,
+    HostExecutorKind,
+    HostPolicy,
+    HostThread,
+    HostTopic,
+    RosRelease,
+)
+from amalthea_uros.perf.network import Span, plain_topic
+from amalthea_uros.spec import host as spec
+from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.uros.application.callbacks import interval_of_rate
+from amalthea_uros.uros.application.notes import Notes
+
+
+def host_of(description: Description, problems: Notes) -> Host:
+    """The host that a description describes; an empty one if it has none."""
+    return Host() if description.host is None else _HostBuilder(description.host, problems).host(description)
+
+
+@dataclass(frozen=True, slots=True)
+class _HostBuilder:
+    section: spec.HostSection
+    problems: Notes
+
+    def host(self, description: Description) -> Host:
+        """The host."""
+        section = self.section
+        self._check(description)
+        return Host(
+            release=RosRelease(section.ros),
+            computers=tuple(
+                HostComputer(name=each.name, cores=each.cores, origin=each.location()) for each in section.computers
+            ),
+            executors=tuple(map(self._executor, section.executors)),
+            topics=tuple(self._topics()),
+        )
+
+    def _check(self, description: Description) -> None:
+        section, problems = self.section, self.problems
+        for kind, items in (
+            ("computer", section.computers),
+            ("executor of the host", section.executors),
+            ("node", section.nodes),
+        ):
+            problems.unique(kind, ((each.name, each.location("name")) for each in items))
+        problems.unique("topic", ((plain_topic(each.topic), each.location("topic")) for each in section.topics))
+        callbacks = [callback for node in section.nodes for callback in _callbacks(node)]
+        problems.unique("callback of the host", ((each.name, each.location("name")) for each in callbacks))
+        executors = {executor.name for executor in section.executors}
+        for node in section.nodes:
+            if node.executor not in executors:
+                problems.undefined("executor of the host", node.executor, executors, node.location("executor"))
+            groups = {group.name for group in node.groups}
+            for callback in _callbacks(node):
+                if callback.group is not None and callback.group not in groups:
+                    problems.undefined(
+                        "callback group", callback.group, groups, callback.location("group"), owner=f"node {node.name!r}"
+                    )
+        self._check_sources(description)
+
+    def _check_sources(self, description: Description) -> None:
+        """Report topics whose rate is stated although it follows from what publishes them."""
+        published = {plain_topic(topic) for node in self.section.nodes for each in _callbacks(node) for topic in each.publishes}
+        published |= {plain_topic(each.topic) for node in description.application.nodes for each in node.publishers}
+        for topic in self.section.topics:
+            if topic.rate is not None and plain_topic(topic.topic) in published:
+                message = f"the rate of {topic.topic!r} is stated, but follows from what publishes it"
+                self.problems.error("APP003", message, topic.location("rate"), "Remove 'rate'.")
+            if topic.jitter is not None and topic.rate is None:
+                message = f"'jitter' of {topic.topic!r} has no effect without 'rate'"
+                self.problems.error("APP003", message, topic.location("jitter"), "Set 'rate', or remove 'jitter'.")
+
+    def _executor(self, section: spec.HostExecutorSection) -> HostExecutor:
+        computers = {computer.name: computer for computer in self.section.computers}
+        computer = section.computer
+        if computer is None and len(computers) > 1:
+            message = f"the computer of {section.name!r} is not specified"
+            self.problems.error("APP003", message, section.location(), f"Set 'computer' to one of {', '.join(computers)}.")
+        elif computer is not None and computer not in computers:
+            self.problems.undefined("computer", computer, computers, section.location("computer"))
+        thread = _thread(section.thread)
+        cores = computers[computer].cores if computer in computers else self.section.computers[0].cores
+        if beyond := next((core for core in thread.cores if core >= cores), None):
+            message = f"{section.name!r} runs on core {beyond}, but the computer has the cores 0 to {cores - 1}"
+            self.problems.error(
+                "APP003", message, section.thread.location(), "Correct the number of the core, or set 'cores' of the computer."
+            )
+        nodes = [node for node in self.section.nodes if node.executor == section.name]
+        return HostExecutor(
+            name=section.name,
+            computer=computer or self.section.computers[0].name,
+            kind=HostExecutorKind(section.type),
+            thread=thread,
+            threads=section.threads or 1,
+            callbacks=tuple(callback for node in nodes for callback in self._of_node(node)),
+            origin=section.location(),
+        )
+
+    def _of_node(self, node: spec.HostNodeSection) -> Iterator[HostCallback]:
+        reentrant = {group.name for group in node.groups if group.type == "reentrant"}
+        for section in _callbacks(node):
+            is_timer = isinstance(section, spec.HostTimer)
+            yield HostCallback(
+                name=section.name,
+                kind=HandleKind.TIMER if is_timer else HandleKind.SUBSCRIPTION,
+                execution=self._execution(section.execution_time),
+                period=section.period if isinstance(section, spec.HostTimer) else None,
+                topic=plain_topic(section.topic) if isinstance(section, spec.HostSubscription) else None,
+                depth=section.depth if isinstance(section, spec.HostSubscription) else 10,
+                publishes=tuple(map(plain_topic, section.publishes)),
+                reads=tuple(section.reads),
+                writes=tuple(section.writes),
+                group=f"{node.name}/{section.group or ''}",
+                is_reentrant=section.group in reentrant,
+                origin=section.location(),
+            )
+
+    def _execution(self, section: ExecutionTimeSection) -> Span:
+        """The bounds of an execution time; a distribution between them is not used."""
+        if section.on is not None:
+            message = "execution times by platform are those of controllers"
+            self.problems.error(
+                "APP003", message, section.location("on"), "State 'min' and 'max' on the computer of the callback."
+            )
+            return Span()
+        if section.histogram is not None:
+            return Span(least=min(each.min for each in section.histogram), most=max(each.max for each in section.histogram))
+        # Of a Weibull distribution, some values are above 'max'.
+        return Span(least=section.min or 0, most=None if section.exceeding else section.max)
+
+    def _topics(self) -> Iterator[HostTopic]:
+        """The topics that are described, and those that only callbacks name."""
+        stated = {plain_topic(each.topic): each for each in self.section.topics}
+        callbacks = [callback for node in self.section.nodes for callback in _callbacks(node)]
+        named = [plain_topic(topic) for each in callbacks for topic in each.publishes]
+        named += [plain_topic(each.topic) for each in callbacks if isinstance(each, spec.HostSubscription)]
+        for name in dict.fromkeys((*stated, *named)):
+            topic = stated.get(name)
+            latency = topic.latency if topic is not None and topic.latency is not None else self.section.latency
+            yield HostTopic(
+                name=name,
+                latency=Span() if latency is None else Span(least=latency.min, most=latency.max),
+                interval=None if topic is None or topic.rate is None else interval_of_rate(topic.rate),
+                jitter=(topic.jitter or 0) if topic is not None else 0,
+                origin=(topic or self.section).location(),
+            )
+
+
+def _callbacks(node: spec.HostNodeSection) -> list[spec.HostSubscription | spec.HostTimer]:
+    """The callbacks of a node; timers come before subscriptions in a ready set anyway."""
+    return [*node.timers, *node.subscriptions]
+
+
+def _thread(section: spec.ThreadSection) -> HostThread:
+    cores = (section.core,) if section.core is not None else tuple(section.cores or ())
+    return HostThread(
+        policy=HostPolicy(section.policy),
+        priority=section.priority or 0,
+        cores=cores,
+        budget=section.budget or 0,
+        period=section.period or 0,
+    )

@@ -1,0 +1,75 @@
+"""Whole systems of the vectors: no bound is below a worst case of their player, and executors that no method covers are unknown."""
+
+from collections import defaultdict
+from statistics import median
+
+import pytest
+from host_vectors import entries, host_of, linked_chains, with_chains
+from support import ROOT
+
+from amalthea_uros.analyze.system import analyze_system
+
+
+@pytest.mark.parametrize("entry", [pytest.param(entry, id=entry["system"]["name"]) for entry in entries()])
+def test_no_bound_is_below_an_observed_value(entry):
+    system, observed = entry["system"], entry["observed"]
+    analysis = analyze_system(with_chains(host_of(system), linked_chains(system)))
+    handles = {handle.name: handle for executor in analysis.host for handle in executor.handles}
+    for callback in system["callbacks"]:
+        name, worst = callback["name"], handles[callback["name"]].response.worst
+        # A callback that is missing starves.
+        assert worst is None or worst >= observed[name]["response"], name
+        if entry["lost"].get(name) and worst is not None:
+            assert handles[name].lost is not None
+    for name, path in linked_chains(system):
+        if len(path) > 1 and (bound := analysis.chains[name].worst_if_not_lost) is not None:
+            assert bound >= observed[name]["latency"], name
+
+
+def test_groups_that_exclude_each_other_are_unknown():
+    starved = [entry["system"] for entry in entries() if any("group" in each for each in entry["system"]["callbacks"])]
+    for system in starved:
+        host = host_of(system)
+        results = analyze_system(with_chains(host, [])).host
+        for executor, result in zip(host.executors, results, strict=True):
+            if not all(callback.is_reentrant for callback in executor.callbacks):
+                assert all(handle.response.worst is None for handle in result.handles)
+                assert "starve" in result.reason
+
+
+def ratios(entry):
+    """The bounds divided by the largest observed values: of callbacks, and of chains of at least two; only those that are known."""
+    system, observed = entry["system"], entry["observed"]
+    analysis = analyze_system(with_chains(host_of(system), linked_chains(system)))
+    for executor in analysis.host:
+        for handle in executor.handles:
+            if handle.response.worst is not None and handle.name in observed:
+                yield "callbacks", handle.response.worst / observed[handle.name]["response"]
+    for name, path in linked_chains(system):
+        bound = analysis.chains[name].worst_if_not_lost
+        if len(path) > 1 and bound is not None:
+            yield "chains", bound / observed[name]["latency"]
+
+
+def kind(system):
+    """The row of the table of the page."""
+    first, *others = system["executors"]
+    if others:
+        return "several threads of fixed priority"
+    if "reservation" in first:
+        return "single-threaded in a reservation"
+    return {"single": "single-threaded", "multi": "multi-threaded, reentrant"}.get(first["type"], first["type"])
+
+
+@pytest.mark.skipif(not list(entries()), reason="the vectors are not at hand")
+def test_the_pessimism_that_the_page_states():
+    found = defaultdict(lambda: defaultdict(list))
+    for entry in entries():
+        for what, ratio in ratios(entry):
+            found[kind(entry["system"])][what].append(ratio)
+    page = (ROOT / "docs" / "ros2-host.md").read_text()
+    for row, values in found.items():
+        cells = [
+            f"{median(values[what]):.2f} ({max(values[what]):.1f})" if values[what] else "-" for what in ("callbacks", "chains")
+        ]
+        assert f"| {row} | {' | '.join(cells)} |" in page

@@ -1,0 +1,139 @@
+"""The host of an app.yaml: what it becomes, what it is analysed with, and what is refused."""
+
+import re
+from pathlib import Path
+
+import pytest
+from support import ROOT
+
+from amalthea_uros import analyze, describe
+from amalthea_uros.bridge.build import build_model
+from amalthea_uros.bridge.extract import extract
+from amalthea_uros.errors import ReadError
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.units import parse_time
+from amalthea_uros.uros.described import describe_text
+from amalthea_uros.xmi.load import load
+from amalthea_uros.xmi.save import save
+
+PAGE = (ROOT / "docs" / "ros2-host.md").read_text()
+ROBOT = re.search(r'```yaml title="robot.yaml"\n(.*?)```', PAGE, re.DOTALL)[1]
+
+
+def responses(text):
+    """The executors of the host in a text."""
+    return analyze(text).host
+
+
+def worst(text, executor, callback):
+    return responses(text)[executor].handles[callback].response.worst
+
+
+def test_callbacks_are_in_the_order_of_the_file_with_timers_first():
+    control, log = describe_text(ROBOT).assembly.system.host.executors
+    assert [(each.name, each.kind) for each in control.callbacks] == [
+        ("Watch", HandleKind.TIMER),
+        ("On_Odom", HandleKind.SUBSCRIPTION),
+    ]
+    assert [each.depth for each in (*control.callbacks, *log.callbacks)] == [10, 5, 10]
+
+
+def test_a_host_comes_back_from_a_model(tmp_path):
+    system = describe_text(ROBOT).assembly.system
+    save(build_model(system), tmp_path / "robot.amxmi")
+    found = extract(load(tmp_path / "robot.amxmi"))
+    assert found.system == system
+    assert found.findings == ()
+    assert analyze(tmp_path / "robot.amxmi").chains["odom-to-cmd"].worst == analyze(ROBOT).chains["odom-to-cmd"].worst
+
+
+def test_threads_of_higher_priority_delay_the_others():
+    assert worst(ROBOT, "control", "On_Odom") == parse_time("3.8 ms")  # after Watch, which has just begun
+    assert worst(ROBOT, "log", "On_Log") == parse_time("4.8 ms")  # after Watch and On_Odom
+    alone = ROBOT.replace("priority: 20, core: 0", "priority: 20, core: 1")
+    assert worst(alone, "log", "On_Log") == parse_time("1 ms")
+
+
+def test_a_reservation_provides_its_budget_after_twice_the_rest_of_a_period():
+    reserved = ROBOT.replace("{policy: fifo, priority: 20, core: 0}", "{policy: deadline, budget: 2 ms, period: 10 ms}")
+    assert worst(reserved, "log", "On_Log") == parse_time("17 ms")
+    # The other thread is preempted by two budgets, at the end of a period and at the begin of the next one.
+    assert worst(reserved, "control", "On_Odom") == parse_time("7.8 ms")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("thread: {policy: fifo, priority: 80, core: 0}", "thread: {core: 0}", "'other'"),
+        ("priority: 80, core: 0", "priority: 80", "several cores"),
+        ("  latency: {min: 50 us, max: 400 us}\n", "", "latency of the topic 'odom'"),
+        ("to_host: {min: 0.2 ms, max: 2 ms}, ", "", "'to_host' of the agent is not stated"),
+        ("topic: odom, depth", "topic: scan, depth", "publishes 'scan'"),
+        ("{min: 1 ms, max: 3 ms}", "30 ms", "overload"),
+    ],
+)
+def test_what_is_not_stated_leaves_the_executor_unknown(old, new, reason):
+    assert old in ROBOT
+    control = responses(ROBOT.replace(old, new))["control"]
+    assert reason in control.reason
+    assert all(handle.response.worst is None for handle in control.handles)
+    assert analyze(ROBOT.replace(old, new)).chains["odom-to-cmd"].worst is None
+
+
+def test_the_controller_is_analysed_with_the_jitter_of_the_host():
+    """Report (14.086284724 ms), the wire (0.716145835 ms), the agent (1.8 ms), two topics (0.35 ms each), and On_Odom (3.6 ms) vary."""
+    result = analyze(ROBOT.replace("jitter: 25 ms", "jitter: 1 ms"))
+    (handle,) = (each for each in result.solution.context.system.executors[0].handles if each.name == "On_Cmd")
+    published = result.solution.event_models["odom_topic_from_Report"].jitter
+    assert handle.jitter == published + parse_time("716145.835 ns") + parse_time("6.1 ms")
+    assert [each.rule for each in result.findings if each.rule.startswith("HST")] == ["HST003"]
+    assert result.chains["odom-to-cmd"].worst is not None
+
+
+def test_several_publishers_are_an_error_and_leave_the_chain_unknown():
+    result = analyze(ROBOT.replace("max: 3 ms}}", "max: 3 ms}, publishes: [cmd_vel]}"))
+    assert "HST004" in {each.rule for each in result.findings}
+    assert result.chains["odom-to-cmd"].worst is None
+
+
+def test_a_timer_that_reads_what_a_callback_writes_adds_its_period():
+    text = ROBOT.replace("publishes: [cmd_vel, log]", "writes: [pose], publishes: [log]")
+    text = text.replace("max: 3 ms}}", "max: 3 ms}, reads: [pose], publishes: [cmd_vel]}")
+    text = text.replace("On_Odom, /cmd_vel", "On_Odom, Watch, /cmd_vel").replace(
+        "interval: 100 ms, jitter: 25 ms", "interval: 20 ms"
+    )
+    hops = {hop.name: hop.worst for hop in analyze(text).chains["odom-to-cmd"].hops}
+    assert hops["control: Watch"] == parse_time("20 ms") + parse_time("3.8 ms")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("executor: log", "executor: lag", "undefined executor of the host 'lag'"),
+        ("core: 0}}\n    - {name: log", "core: 4}}\n    - {name: log", "'control' runs on core 4"),
+        ("name: On_Log, topic", "name: On_Odom, topic", "duplicate callback of the host name 'On_Odom'"),
+        ("On_Odom, topic: odom", "On_Odom, group: g, topic: odom", "undefined callback group 'g'"),
+        ("chains:", "  topics: [{topic: odom, rate: 10 Hz}]\nchains:", "the rate of 'odom' is stated, but follows"),
+        ("policy: fifo, priority: 20", "policy: fifo", "needs 'priority'"),
+        ("{name: log, thread", "{name: log, type: multi-threaded, thread", "needs 'threads'"),
+        ("/odom, On_Odom", "/odom, On_Odum", "undefined process, runnable or label 'On_Odum'"),
+    ],
+)
+def test_contradictions_are_refused_with_their_place(old, new, message):
+    assert old in ROBOT
+    with pytest.raises(ReadError) as refused:
+        describe_text(ROBOT.replace(old, new, 1))
+    (finding,) = (each for each in refused.value.findings if message in each.message)
+    assert finding.location.line
+
+
+def test_a_host_can_be_described_without_callbacks_of_a_controller(tmp_path):
+    text = ROBOT[: ROBOT.index("middleware:")] + ROBOT[ROBOT.index("\nhost:") + 1 : ROBOT.index("chains:")]
+    path = Path(tmp_path, "host.yaml")
+    path.write_text(
+        text.replace(
+            "      subscriptions:\n        - {name: On_Odom, topic: odom",
+            "      subscriptions:\n        - {name: On_Odom, topic: scan",
+        )
+    )
+    assert len(describe(path).system.host.executors) == 2
