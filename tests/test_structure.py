@@ -42,7 +42,7 @@ LINES = {
     "services": 2014,
     "simulate": 7843,
     "source": 1887,
-    "spec": 2153,
+    "spec": 2151,
     "timing": 5145,
     "trace": 4803,
     "units": 164,
