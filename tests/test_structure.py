@@ -21,7 +21,7 @@ LINES = {
     "_internal": 680,
     "_version": 1,
     "am": 2,
-    "analyze": 8020,
+    "analyze": 8030,
     "bridge": 2809,
     "cli": 2050,
     "compare": 3440,
