@@ -21,7 +21,7 @@ LINES = {
     "_internal": 749,
     "_version": 1,
     "am": 2,
-    "analyze": 8020,
+    "analyze": 8030,
     "bridge": 2809,
     "cli": 2175,
     "compare": 3443,

@@ -54,7 +54,7 @@ class ThreadSection(DescriptionSection):
     """Priority of `SCHED_FIFO`; a higher number is a higher priority."""
     core: CountOrNone | None = None
     """Core on which it runs, counted from 0."""
-    cores: list[CountOrNone] | None = Field(None, min_length=1)
+    cores: Annotated[list[CountOrNone], Field(min_length=1)] | None = None
     """Cores on which it may run; default: all."""
     budget: Duration | None = None
     """Budget of `SCHED_DEADLINE` in each period."""
@@ -77,10 +77,6 @@ class ThreadSection(DescriptionSection):
         return self
 
 
-def _without_policy() -> ThreadSection:
-    return ThreadSection()
-
-
 class HostExecutorSection(DescriptionSection):
     """An executor of the host."""
 
@@ -94,7 +90,7 @@ class HostExecutorSection(DescriptionSection):
     """Class of rclcpp."""
     threads: Count | None = None
     """Number of threads of a multi-threaded executor."""
-    thread: ThreadSection = Field(default_factory=_without_policy)
+    thread: ThreadSection = Field(default_factory=ThreadSection)
     """How its thread is scheduled."""
 
     @model_validator(mode="after")

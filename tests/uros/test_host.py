@@ -96,6 +96,16 @@ def test_several_publishers_are_an_error_and_leave_the_chain_unknown():
     assert result.chains["odom-to-cmd"].worst is None
 
 
+@pytest.mark.parametrize("executor", ["log", "control"])
+def test_callbacks_that_publish_in_a_circle_are_unknown(executor):
+    text = ROBOT.replace("execution_time: {min: 200 us, max: 1 ms}}", "execution_time: 1 ms, publishes: [odom2]}").replace(
+        "executor: log", f"executor: {executor}"
+    )
+    results = responses(text.replace("topic: odom, depth", "topic: odom2, depth"))
+    assert "circle" in results["control"].reason
+    assert results["control"].handles["On_Odom"].response.worst is None
+
+
 def test_a_timer_that_reads_what_a_callback_writes_adds_its_period():
     text = ROBOT.replace("publishes: [cmd_vel, log]", "writes: [pose], publishes: [log]")
     text = text.replace("max: 3 ms}}", "max: 3 ms}, reads: [pose], publishes: [cmd_vel]}")

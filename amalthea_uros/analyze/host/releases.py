@@ -46,11 +46,15 @@ class HostReleases:
     def solve(self) -> HostReleases:
         """Find the least fixed point, executor by executor; what has none is unknown."""
         host = self.topics.host
+        for circle in self.topics.circles():
+            for name in circle:
+                reason = f"callbacks publish in a circle: {', '.join(sorted(circle))}"
+                self.reasons.setdefault(self.topics.executor_of[name].name, reason)
         for executor in host.executors:
             try:
                 self.processors[executor.name] = processor_of(executor, host)
             except UnknownError as error:
-                self.reasons[executor.name] = str(error)
+                self.reasons.setdefault(executor.name, str(error))
         for _ in range(_MAX_PASSES):
             before = self._state()
             for executor in host.executors:
@@ -126,10 +130,10 @@ class HostReleases:
         ------
         UnknownError : their number has no bound.
         """
-        entering = self._entering(self.topics.route(callback)[0])
         response, executor = self.latencies.get(callback.name), self.topics.executor_of[callback.name]
         if executor.name in self.reasons:
             raise UnknownError(self._depends_on(callback, executor))
+        entering = self._entering(self.topics.route(callback)[0])
         # Of what was not looked at yet, the least variation is assumed; the iteration continues until all are consistent.
         late = 0 if response is None or response.worst is None else response.worst - self.best(callback)
         return delayed(entering, late)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros._internal.graphs import circles
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import agent_hop, sent, variation
@@ -52,6 +53,15 @@ class HostTopics:
     def publishers(self, topic: str) -> list[HostCallback]:
         """The callbacks of the host that publish a topic."""
         return [callback for callback in self.host.callbacks if topic in callback.publishes]
+
+    def circles(self) -> list[set[str]]:
+        """The callbacks that publish to each other in a circle, by name."""
+
+        def before(name: str) -> list[str]:
+            topic = self.callbacks[name].topic
+            return [] if topic is None else [each.name for each in self.publishers(topic)]
+
+        return circles(self.callbacks, before)
 
     def transmissions(self, topic: str, direction: Direction) -> list[Transmission]:
         """The messages of a topic on the wires of the controller."""
