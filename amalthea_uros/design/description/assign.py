@@ -15,7 +15,6 @@ from amalthea_uros.design.description.text_edits import Path, Value, has_mapping
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.names import listed
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
-from amalthea_uros.spec.executors import LoopSection
 from amalthea_uros.spec.nodes import plain, read_nodes
 from amalthea_uros.spec.section import Shorthand
 from amalthea_uros.spec.written import content, is_list, section_class, written
@@ -92,7 +91,7 @@ class Assignments:
         for holder in key.holders[1:]:
             if holder.path in self.written:
                 return holder
-            is_whole = isinstance(holder.section, Shorthand | LoopSection)
+            is_whole = isinstance(holder.section, Shorthand)
             if is_whole and not has_mapping(self.text, holder.path):
                 return holder
         return None
@@ -134,8 +133,10 @@ def value_of(key: DescriptionKey, change: Change) -> Value:
 def _refuse_loss(key: DescriptionKey, part: type[Shorthand], change: Change) -> None:
     """Refuse one value for what has further parts, which would be lost."""
     present = written(key.section, key.field)
-    lost = [name for name in present if name not in part.shorthand] if isinstance(present, Mapping) else []
-    if lost and (not issubclass(part, ExecutionTimeSection) or {"on", "histogram"} & set(lost)):
+    if not isinstance(present, Mapping):
+        return
+    lost = [name for name in present if name not in part.shorthand]
+    if lost and (not issubclass(part, ExecutionTimeSection) or not {"on", "histogram"}.isdisjoint(lost)):
         parts = ", ".join(f"{change.target}.{name}" for name in present)
         raise InvalidArgumentError(f"{change}: it has parts, which are stated one by one; change {parts}")
 
