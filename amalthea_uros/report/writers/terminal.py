@@ -88,10 +88,11 @@ _PLACES = 8
 _VARIABLE = re.compile(r"""'[^']*'|"[^"]*"|\d[\d,.]*""")
 
 
-def kind_of_message(finding: Finding) -> tuple[str, Severity, str, Path | None]:
+def kind_of_message(finding: Finding) -> tuple[str, Severity, str, str, Path | None]:
     """The properties that findings of a kind in a file share."""
     path = finding.location.path if finding.location else None
-    return finding.rule, finding.severity, _VARIABLE.sub("", finding.message), path
+    # Gaps of a description need another remedy each.
+    return finding.rule, finding.severity, _VARIABLE.sub("", finding.message), _VARIABLE.sub("", finding.help), path
 
 
 def _more(findings: Sequence[Finding]) -> str:
