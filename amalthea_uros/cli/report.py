@@ -75,7 +75,7 @@ def report(
     itself and can be printed; a summary (.md) fits in a comment of a CI system; .mmd and .dot have the data flow. The exit code is 1
     if a deadline, requirement or constraint is missed, an activation is lost, or a core is overloaded.
     """
-    outputs = _outputs(files, outputs)
+    outputs = _all_outputs(files, outputs)
     with working("Analyzing and simulating"):
         content = compile_report(paths, settings, changes=changes, with_simulation=not no_simulation, **options)
     show_differences(content.differences)
@@ -84,7 +84,7 @@ def report(
     sys.exit(1 if content.analysis.summary.schedulable in FAILING[fail_on] else 0)
 
 
-def _outputs(files: tuple[Path, ...], outputs: tuple[Output, ...]) -> tuple[Output, ...]:
+def _all_outputs(files: tuple[Path, ...], outputs: tuple[Output, ...]) -> tuple[Output, ...]:
     """The formats and files, of which each can be written; refused before work that may take long."""
     if not files and not outputs:
         raise click.UsageError("nothing is written; add -o FILE, e.g. -o report.html, or --output FORMAT")
