@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Subject: TypeAlias = "StrPath | Iterable[StrPath] | Mapping[str, Any] | Model | System"
 
 _ACCEPTED = (
-    "the path of an app.yaml, .amxmi or .iprx file, a list of paths, the text of an app.yaml, its content as a dict, a Model, "
+    "the path of an app.yaml or of an .amxmi or .iprx file, a list of paths, the text of an app.yaml, its content as a dict, a Model, "
     "or a System such as taskset() makes"
 )
 _NO_BUS = "only an app.yaml describes the messages on a CAN bus"
