@@ -46,7 +46,7 @@ LINES = {
     "timing": 5140,
     "trace": 4803,
     "units": 164,
-    "uros": 6592,
+    "uros": 6593,
     "validate": 3612,
     "xmi": 8530,
 }
