@@ -48,7 +48,7 @@ LINES = {
     "timing": 5370,
     "trace": 4863,
     "units": 194,
-    "uros": 6592,
+    "uros": 6593,
     "validate": 3616,
     "xmi": 8542,
 }
