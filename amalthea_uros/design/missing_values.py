@@ -63,7 +63,7 @@ def missing_values(
     """
     if analysis.processes and not any(scheduler_cores(name, system) for name in system.schedulers):
         return MissingValues(given, (), (), lacks_schedulers=True)
-    trial = _Trial(system, settings, _bounded(analysis))
+    trial = _ValueTrial(system, settings, _bounded(analysis))
     if len(trial.before) == len(analysis.processes) or len(analysis.processes) > _EFFORT:
         return None
     changes: list[Change] = []
@@ -88,7 +88,7 @@ def _bounded(analysis: Analysis) -> set[str]:
 
 
 @dataclass(slots=True)
-class _Trial:
+class _ValueTrial:
     """Analyses with statements, up to an effort."""
 
     system: System
