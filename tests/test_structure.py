@@ -22,7 +22,7 @@ LINES = {
     "_version": 1,
     "am": 2,
     "analyze": 7272,
-    "bridge": 2774,
+    "bridge": 2775,
     "cli": 2175,
     "compare": 3440,
     "design": 4942,

@@ -15,7 +15,6 @@ from math import inf
 from amalthea_uros.perf.activities import SemaphoreAccess
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 from amalthea_uros.perf.os import (
-    Duration,
     InterruptController,
     OperatingSystem,
     Os,
@@ -28,7 +27,7 @@ from amalthea_uros.perf.os import (
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.os import OsSection
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, sharing_a_priority
-from amalthea_uros.units import time_text
+from amalthea_uros.units import Duration, time_text
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.planned import HIGHER_IS_MORE_URGENT, PlannedIsr, PlannedTask, PriorityScale

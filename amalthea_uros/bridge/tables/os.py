@@ -14,6 +14,7 @@ from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions,
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.activities import Protection
+from amalthea_uros.units import Duration
 
 SEMAPHORES = ClassTable(
     ClassEntry(
@@ -171,7 +172,7 @@ def _common(element: Any, allocations: SchedulerAllocations, context: Extracting
     if given.priority is not None:
         stated = (perf.Parameter("priority", (given.priority,)), *stated)
     if given.deadline is not None:
-        stated = (*stated, perf.Parameter("deadline", (perf.Duration(given.deadline),)))
+        stated = (*stated, perf.Parameter("deadline", (Duration(given.deadline),)))
     return {
         "name": context.names[element],
         "origin": context.location(element),
