@@ -1,4 +1,4 @@
-"""What is written in a description for a new value of a key."""
+"""The edits in a description for a new value of a key."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ def the_key(target: str, keys: Sequence[DescriptionKey]) -> DescriptionKey | Non
     ------
     InvalidArgumentError : the name means several keys.
     """
-    found = matching(target, keys)
-    if len(found) > 1:
-        names = listed([short_name(each, keys) for each in found])
+    matches = matching(target, keys)
+    if len(matches) > 1:
+        names = listed([short_name(each, keys) for each in matches])
         raise InvalidArgumentError(f"{target!r} means several values of the description: {names}; choose one")
-    return found[0] if found else None
+    return matches[0] if matches else None
 
 
 @dataclass(slots=True)
@@ -134,7 +134,9 @@ def value_of(key: DescriptionKey, change: Change) -> Value:
 def _refuse_loss(key: DescriptionKey, part: type[Shorthand], change: Change) -> None:
     """Refuse one value for what has further parts, which would be lost."""
     present = written(key.section, key.field)
-    lost = [name for name in present if name not in part.shorthand] if isinstance(present, Mapping) else []
+    if not isinstance(present, Mapping):
+        return
+    lost = [name for name in present if name not in part.shorthand]
     if lost and (not issubclass(part, ExecutionTimeSection) or {"on", "histogram"} & set(lost)):
         parts = ", ".join(f"{change.target}.{name}" for name in present)
         raise InvalidArgumentError(f"{change}: it has parts, which are stated one by one; change {parts}")
@@ -158,7 +160,7 @@ def is_stated_by_parts(key: DescriptionKey) -> bool:
 
 
 def assignments(text: str, pairs: Iterable[tuple[DescriptionKey, Change]]) -> tuple[Assignment, ...]:
-    """What is written for changes of keys; raises as `Assignments.add`."""
+    """The edits for changes of keys; raises as `Assignments.add`."""
     collected = Assignments(text, {})
     for key, change in pairs:
         collected.add(key, change)

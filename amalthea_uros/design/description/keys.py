@@ -97,7 +97,7 @@ def _keys(holders: tuple[Holder, ...], names: tuple[str, ...], text: str) -> Ite
     path, section = holders[-1].path, holders[-1].section
     for field, info in type(section).model_fields.items():
         key = info.alias or field
-        if key == "executor" and getattr(section, "executors", ()):
+        if key == "executor" and getattr(section, "executors", None):
             continue
         yield DescriptionKey(path=(*path, key), names=(*names, key), holders=holders, field=field)
         yield from _inner(holders, (*names, key), (*path, key), field, text)
