@@ -117,6 +117,8 @@ def require_settings(settings: Settings, system: System) -> None:
     if not isinstance(settings, Settings):
         raise TypeError(f"expected Settings, not {type(settings).__name__}; changes of values are given as changes=...")
     require("core", settings.frequencies, system.cores)
+    for core in settings.frequencies:
+        refuse_wire(core, system)
     require("process", settings.factors, system.processes)
     if settings.phases:
         require("callback with a phase", settings.phases, sources(system))
