@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.paths import TEXT, StrPath
+from amalthea_uros.design.changes.kinds import refuse_wire
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
