@@ -8,7 +8,9 @@ from functools import cached_property
 from typing import TypeVar
 
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.perf.activities import WaitEvent
 from amalthea_uros.perf.os import Policy, Scheduler
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.activations import Activations, TriggeredTogether, triggered_together
@@ -19,17 +21,18 @@ from amalthea_uros.timing.basics.time_base import MAX_INPUT
 from amalthea_uros.timing.blocking.critical_sections import Locks, LockUsage, spinlocks_of
 from amalthea_uros.timing.blocking.regions import ProcessRegions, RegionKind, RegionWalk
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.demand.model import DemandModel
+from amalthea_uros.timing.demand.model import WITHOUT_BOUND, DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.demand.overheads import ASSUMPTION as OVERHEAD_ASSUMPTION
 from amalthea_uros.timing.demand.overheads import has_overhead_of_tasks
 from amalthea_uros.timing.demand.quantiles import quantile_assumption, with_quantiles
 from amalthea_uros.timing.event_models.models import EventModel
-from amalthea_uros.timing.jobs.executed import states_execution_time, with_direct_calls
+from amalthea_uros.timing.jobs.executed import executed, states_execution_time, with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.scheduling.ranks import SchedulingOrder
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, Server
 from amalthea_uros.timing.touching import Touching, why_suspended, with_successors
+from amalthea_uros.timing.waits import AwaitedEvent, awaited_events
 
 T = TypeVar("T")
 
@@ -45,6 +48,14 @@ class ProcessPlacement:
     priority: int | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class WaitingProcess:
+    """A process that waits for events, and its demand without that, in the time base of its core."""
+
+    awaited: Sequence[AwaitedEvent]
+    demand: MultiframeDemand
+
+
 @dataclass
 class TimingContext:
     """A system as analyses, simulation and rules see it; mappings are by the names of processes.
@@ -55,6 +66,7 @@ class TimingContext:
     demands : execution demand, in the time base of the core, including scheduler decisions at the end of jobs
     decisions : demand of scheduler decisions at activations, if the model specifies it
     reasons : why the response time of a process is unknown
+    waiting : processes whose waits for events have a bound that depends on response times; `demands` has none of them before it is known
     unclear_locks : why the critical sections of a process are unknown
     unknown_demands : why the execution demand of a process does not follow from its activities
     open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
@@ -69,6 +81,7 @@ class TimingContext:
     decisions: dict[str, MultiframeDemand] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     unclear_locks: dict[str, str] = field(default_factory=dict)
+    waiting: dict[str, WaitingProcess] = field(default_factory=dict)
     unknown_demands: Mapping[str, str] = field(default_factory=dict)
     open_semaphores: frozenset[str] = frozenset()
 
@@ -210,6 +223,10 @@ class TimingContext:
         """Whether an executor that spins in a loop runs on a core: when its rounds begin depends on what they do."""
         return any(item.name in self.system.executor_of_task for item in self.on_core(core))
 
+    def has_waits(self, core: str) -> bool:
+        """Whether a process of a core waits for events: what then executes depends on when others set them."""
+        return bool(self.waiting) and any(item.name in self.waiting for item in self.on_core(core))
+
     def served(self, core: str, server: str | None) -> Sequence[ScheduledProcess | Server]:
         """Processes and servers on a core itself or in the budget of a server, highest rank first."""
         return self._served.get((core, server), ())
@@ -272,17 +289,50 @@ class TimingContext:
                     raise UnknownError(self.unknown_demands[name])
                 if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownError(reason)
-                demand = model.of_process(scheduled.process, scheduled.core)
+                waits = self._awaited_events(scheduled)
+                demand = (self.executing if waits else model).of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownError("it has no execution time, and neither have the runnables that it calls")
                 if name in self.decisions:
                     demand = MultiframeDemand((*demand.frames, *self.decisions[name].frames))
                 if demand.worst > MAX_INPUT:
                     raise UnknownError("its execution time exceeds the supported range of times")
-                self.demands[name] = demand
+                if waits:
+                    self.waiting[name] = WaitingProcess(waits, demand)
+                    self.mark_unknown(name, WITHOUT_BOUND)
+                else:
+                    self.demands[name] = demand
             except UnknownError as error:
                 self.notes.warning("ANA004", f"the execution demand of {name!r} is unknown: {error}", scheduled.process)
                 self.mark_unknown(name, str(error))
+
+    def _awaited_events(self, scheduled: ScheduledProcess) -> Sequence[AwaitedEvent]:
+        """The events that each job of a process waits for.
+
+        Raises
+        ------
+        UnknownError : it waits for others, or it is not supported how it does.
+        """
+        system, name = self.system, scheduled.name
+        if WaitEvent not in system.activity_classes or not self.waits(scheduled.process):
+            return ()
+        try:
+            found = awaited_events(scheduled.process, self.activations)
+        except UnknownError as error:
+            raise UnknownError(f"{WITHOUT_BOUND}: {error}") from error
+        iterating = next((each for each in (name, *(each.setter for each in found)) if each in system.executor_of_task), None)
+        if iterating is not None:
+            raise UnknownError(f"{WITHOUT_BOUND}: {iterating!r} executes the rounds of an executor")
+        return found
+
+    def waits(self, process: Process) -> bool:
+        """Whether the jobs of a process wait for events."""
+        return any(isinstance(each, WaitEvent) for each in executed(process.activities, self.system))
+
+    @cached_property
+    def executing(self) -> DemandModel:
+        """Converts activities to execution demand, without the time for which jobs wait for events."""
+        return DemandModel(self.system, self.notes, self.settings, ignores_waits=True)
 
     @cached_property
     def _scheduler_of(self) -> dict[str, str]:
