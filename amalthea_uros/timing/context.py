@@ -8,9 +8,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.perf.activities import WaitEvent
 from amalthea_uros.perf.os import Policy, Scheduler
-from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.activations import Activations, TriggeredTogether, triggered_together
@@ -21,18 +19,18 @@ from amalthea_uros.timing.basics.time_base import MAX_INPUT
 from amalthea_uros.timing.blocking.critical_sections import Locks, LockUsage, spinlocks_of
 from amalthea_uros.timing.blocking.regions import ProcessRegions, RegionKind, RegionWalk
 from amalthea_uros.timing.dataflow.links import Dataflow
-from amalthea_uros.timing.demand.model import WITHOUT_BOUND, DemandModel
+from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.demand.overheads import ASSUMPTION as OVERHEAD_ASSUMPTION
 from amalthea_uros.timing.demand.overheads import has_overhead_of_tasks
 from amalthea_uros.timing.demand.quantiles import quantile_assumption, with_quantiles
 from amalthea_uros.timing.event_models.models import EventModel
-from amalthea_uros.timing.jobs.executed import executed, states_execution_time, with_direct_calls
+from amalthea_uros.timing.jobs.executed import states_execution_time, with_direct_calls
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, effective_priority
 from amalthea_uros.timing.scheduling.ranks import SchedulingOrder
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, Server
 from amalthea_uros.timing.touching import Touching, why_suspended, with_successors
-from amalthea_uros.timing.waits import AwaitedEvent, awaited_events
+from amalthea_uros.timing.waits import WITHOUT_BOUND, WaitingProcess, awaited_events
 
 T = TypeVar("T")
 
@@ -48,14 +46,6 @@ class ProcessPlacement:
     priority: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class WaitingProcess:
-    """A process that waits for events, and its demand without that, in the time base of its core."""
-
-    awaited: Sequence[AwaitedEvent]
-    demand: MultiframeDemand
-
-
 @dataclass
 class TimingContext:
     """A system as analyses, simulation and rules see it; mappings are by the names of processes.
@@ -66,7 +56,7 @@ class TimingContext:
     demands : execution demand, in the time base of the core, including scheduler decisions at the end of jobs
     decisions : demand of scheduler decisions at activations, if the model specifies it
     reasons : why the response time of a process is unknown
-    waiting : processes whose waits for events have a bound that depends on response times; `demands` has none of them before it is known
+    waiting : processes whose waits for events depend on response times; `demands` has those of which the solution knows a bound
     unclear_locks : why the critical sections of a process are unknown
     unknown_demands : why the execution demand of a process does not follow from its activities
     open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
@@ -175,6 +165,8 @@ class TimingContext:
     def stated_demand(self, process: str) -> MultiframeDemand | None:
         """The demand of a process on its core, also if its scheduling cannot be analysed; None if it is unknown."""
         core, model = self.placement(process).core, self.system.processes[process]
+        if process in self.waiting:
+            return self.waiting[process].demand if process in self.demands else None
         if process in self.demands or core is None or not states_execution_time(model, self.system):
             return self.demands.get(process)
         try:
@@ -219,13 +211,23 @@ class TimingContext:
         """The processes of executors in loops, and those that they trigger: they may be activated less often."""
         return with_successors(self.system.executor_of_task, self.system, self.dataflow)
 
-    def has_loops(self, core: str) -> bool:
-        """Whether an executor that spins in a loop runs on a core: when its rounds begin depends on what they do."""
-        return any(item.name in self.system.executor_of_task for item in self.on_core(core))
+    def has_loops_or_waits(self, core: str) -> bool:
+        """Whether a process of a core executes at times that its activations do not determine.
+
+        When the rounds of an executor that spins in a loop begin depends on what they do, and when a job that waits for events
+        goes on depends on others.
+        """
+        return self.has_waits(core) or any(item.name in self.system.executor_of_task for item in self.on_core(core))
 
     def has_waits(self, core: str) -> bool:
-        """Whether a process of a core waits for events: what then executes depends on when others set them."""
+        """Whether a process of a core waits for events."""
         return bool(self.waiting) and any(item.name in self.waiting for item in self.on_core(core))
+
+    @cached_property
+    def awaited_alone(self) -> frozenset[str]:
+        """The processes of which each job is activated only by one that has waited for the job before it."""
+        awaited = [each for waiting in self.waiting.values() for each in waiting.awaited]
+        return frozenset(each.setter for each in awaited if each.gap is None and each.is_last)
 
     def served(self, core: str, server: str | None) -> Sequence[ScheduledProcess | Server]:
         """Processes and servers on a core itself or in the budget of a server, highest rank first."""
@@ -289,7 +291,7 @@ class TimingContext:
                     raise UnknownError(self.unknown_demands[name])
                 if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownError(reason)
-                waits = self._awaited_events(scheduled)
+                waits = awaited_events(scheduled.process, self.activations)
                 demand = (self.executing if waits else model).of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownError("it has no execution time, and neither have the runnables that it calls")
@@ -305,29 +307,6 @@ class TimingContext:
             except UnknownError as error:
                 self.notes.warning("ANA004", f"the execution demand of {name!r} is unknown: {error}", scheduled.process)
                 self.mark_unknown(name, str(error))
-
-    def _awaited_events(self, scheduled: ScheduledProcess) -> Sequence[AwaitedEvent]:
-        """The events that each job of a process waits for.
-
-        Raises
-        ------
-        UnknownError : it waits for others, or it is not supported how it does.
-        """
-        system, name = self.system, scheduled.name
-        if WaitEvent not in system.activity_classes or not self.waits(scheduled.process):
-            return ()
-        try:
-            found = awaited_events(scheduled.process, self.activations)
-        except UnknownError as error:
-            raise UnknownError(f"{WITHOUT_BOUND}: {error}") from error
-        iterating = next((each for each in (name, *(each.setter for each in found)) if each in system.executor_of_task), None)
-        if iterating is not None:
-            raise UnknownError(f"{WITHOUT_BOUND}: {iterating!r} executes the rounds of an executor")
-        return found
-
-    def waits(self, process: Process) -> bool:
-        """Whether the jobs of a process wait for events."""
-        return any(isinstance(each, WaitEvent) for each in executed(process.activities, self.system))
 
     @cached_property
     def executing(self) -> DemandModel:

@@ -21,9 +21,14 @@ from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic
 from amalthea_uros.timing.activation.activations import Activations
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import is_always
+from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.jobs.positions import ActivityPosition, is_in_fixed_order
 from amalthea_uros.units import Time
+
+#: Why the demand of a process that waits is unknown.
+WITHOUT_BOUND = "it waits for events without a timeout, so there is no upper bound"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +50,14 @@ class AwaitedEvent:
     is_active: bool
 
 
+@dataclass(frozen=True, slots=True)
+class WaitingProcess:
+    """A process that waits for events, and its demand without that, in the time base of its core."""
+
+    awaited: Sequence[AwaitedEvent]
+    demand: MultiframeDemand
+
+
 def awaited_events(process: Process, activations: Activations) -> Sequence[AwaitedEvent]:
     """The events that each job of a process waits for.
 
@@ -52,8 +65,26 @@ def awaited_events(process: Process, activations: Activations) -> Sequence[Await
     ------
     UnknownError : it is not guaranteed that they are set.
     """
-    search = _Search(process, activations, activations.dataflow.events.positions(process.name))
-    return [search.awaited(wait, event) for wait in search.waits() for event in wait.activity.events]  # type: ignore[union-attr]
+    system = activations.system
+    if WaitEvent not in system.activity_classes:
+        return ()
+    if not any(isinstance(each, WaitEvent) for each in executed(process.activities, system)):
+        return ()
+    try:
+        search = _Search(process, activations, activations.dataflow.events.positions(process.name))
+        found = [search.awaited(wait, event) for wait in search.waits() for event in names_of(wait)]
+        for name in (process.name, *(each.setter for each in found)):
+            if name in system.executor_of_task:
+                raise UnknownError(f"{name!r} executes the rounds of an executor")
+    except UnknownError as error:
+        raise UnknownError(f"{WITHOUT_BOUND}: {error}") from error
+    return found
+
+
+def names_of(position: ActivityPosition) -> tuple[str, ...]:
+    """The events of an activity that sets, clears or awaits some."""
+    activity = position.activity
+    return activity.events if isinstance(activity, SetEvent | ClearEvent | WaitEvent) else ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +115,9 @@ class _Search:
             case [InterProcess(condition=None, counter=None) as stimulus]:
                 self._require_round_trip(wait, event, place.process, stimulus)
             case _:
-                raise UnknownError(f"{place.process.name!r}, which sets {event!r}, is neither periodic nor triggered by it alone")
+                raise UnknownError(
+                    f"{place.process.name!r}, which sets {event!r}, is neither periodic nor triggered by it alone"
+                )
         last = self.activations.dataflow.events.positions(place.process.name)[-1].number
         waiting = wait.activity.waiting if isinstance(wait.activity, WaitEvent) else None
         return AwaitedEvent(event, place.process.name, gap, place.number == last, waiting is not Waiting.PASSIVE)
@@ -110,7 +143,9 @@ class _Search:
         """Refuse a setter that other jobs trigger, too, or not each job, and an event that can be cleared too early or never."""
         causes = self.activations.causes(stimulus)
         if len(causes) != 1 or causes[0].process.name != self.process.name or not _is_in_each_job(causes[0].position):
-            raise UnknownError(f"{setter.name!r}, which sets {event!r}, is not triggered exactly once by each job that waits for it")
+            raise UnknownError(
+                f"{setter.name!r}, which sets {event!r}, is not triggered exactly once by each job that waits for it"
+            )
         trigger = causes[0].position.number
         if trigger > wait.number:
             raise UnknownError(f"it triggers {setter.name!r}, which sets {event!r}, only after it has waited for that")

@@ -313,7 +313,7 @@ class StageTiming:
         if is_inside(reader.enter) and not self._demand_after(reader.process, reader.enter):
             return False
         releases = known_releases(reader.process, self.context.system)
-        if releases is None or self.context.has_loops(self.context.scheduled[reader.process.name].core):
+        if releases is None or self.context.has_loops_or_waits(self.context.scheduled[reader.process.name].core):
             return False
         return self._interrupts(reader, writer) and self._worst(reader.process) <= releases.period * self.unit
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.perf.activities import Activity, Execute, Group, WaitEvent, Waiting
+from amalthea_uros.perf.activities import Execute, WaitEvent, Waiting
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System

@@ -68,8 +68,6 @@ from amalthea_uros.units import Frequency, time_of_ticks
 
 #: With a finer time base, times could exceed 64-bit integers.
 MAX_TIME_BASE = 1000
-#: Why the demand of a process that waits is unknown.
-WITHOUT_BOUND = "it waits for events without a timeout, so there is no upper bound"
 
 
 @dataclass(slots=True)
@@ -242,7 +240,7 @@ class DemandModel:
             case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not MemoryModel.NONE:
                 return [self.access(core, label, kind, None)]
             case WaitEvent() if not self.ignores_waits:
-                raise UnknownError(WITHOUT_BOUND)
+                raise UnknownError("it waits for events without a timeout, so there is no upper bound")
             case Incomplete(reason=reason, is_access=is_access) if (
                 not is_access or self.settings.memory is not MemoryModel.NONE
             ):
