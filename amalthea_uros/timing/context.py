@@ -300,7 +300,7 @@ class TimingContext:
                 if demand.worst > MAX_INPUT:
                     raise UnknownError("its execution time exceeds the supported range of times")
                 if waits:
-                    self.waiting[name] = WaitingProcess(waits, demand)
+                    self.waiting[name] = WaitingProcess.of(scheduled.process, waits, demand, self.executing, scheduled.core)
                     self.mark_unknown(name, WITHOUT_BOUND)
                 else:
                     self.demands[name] = demand

@@ -21,10 +21,12 @@ from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter, InterProcess, Periodic
 from amalthea_uros.timing.activation.activations import Activations
+from amalthea_uros.timing.basics.time_base import Ticks
+from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.jobs.counters import is_always
 from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.jobs.positions import ActivityPosition, is_in_fixed_order
+from amalthea_uros.timing.jobs.positions import ActivityPosition, is_in_fixed_order, positions
 from amalthea_uros.units import Time
 
 #: Why the demand of a process that waits is unknown.
@@ -52,10 +54,31 @@ class AwaitedEvent:
 
 @dataclass(frozen=True, slots=True)
 class WaitingProcess:
-    """A process that waits for events, and its demand without that, in the time base of its core."""
+    """A process that waits for events.
+
+    Attributes
+    ----------
+    demand : without the time for which it waits, in the time base of its core
+    segments : the longest demand before each wait and after the last one, in the same unit; they overlap at what need not be in one
+    """
 
     awaited: Sequence[AwaitedEvent]
     demand: MultiframeDemand
+    segments: Sequence[Ticks]
+
+    @classmethod
+    def of(
+        cls, process: Process, awaited: Sequence[AwaitedEvent], demand: MultiframeDemand, model: DemandModel, core: str
+    ) -> WaitingProcess:
+        """A process on a core, with its demand by a model that ignores waits."""
+        everything = model.of_activities(process, process.activities, core).worst
+        # Overheads of the job that belong to no activity may be anywhere, and those of the wait before or after it.
+        apart, before, segments = demand.worst - everything, Ticks(0), list[Ticks]()
+        for position in positions(process, model.system, model.sites):
+            if isinstance(position.activity, WaitEvent):
+                segments.append(Ticks(model.of_position(position, core, including=True).worst - before + apart))
+                before = model.of_position(position, core, including=False).worst
+        return cls(awaited, demand, (*segments, Ticks(everything - before + apart)))
 
 
 def awaited_events(process: Process, activations: Activations) -> Sequence[AwaitedEvent]:

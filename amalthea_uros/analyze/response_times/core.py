@@ -8,11 +8,12 @@ from itertools import groupby
 
 from amalthea_uros.analyze.response_times import fixed_priority, priority_levels
 from amalthea_uros.analyze.response_times.blocking import Blocking
+from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, periodic_tasks
 from amalthea_uros.analyze.response_times.priority_levels import BlockedWindow
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
-from amalthea_uros.analyze.response_times.waits import beside_waits
+from amalthea_uros.analyze.response_times.waits import beside_waits, shorter_by_segments
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
@@ -215,8 +216,19 @@ class _CoreAnalysis:
         # The methods are exact for independent activations; offsets can make the worst case impossible.
         bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
         if self.context.has_waits(self.core):
-            bounds = [beside_waits(response, task) for response, task in zip(bounds, tasks, strict=True)]
+            bounds = self._beside_waits(bounds, tasks)
         return [self._without_iterations(item, response) for item, response in zip(usable, bounds, strict=True)]
+
+    def _beside_waits(self, bounds: Sequence[Response], tasks: Sequence[AnalysedTask]) -> list[Response]:
+        """The response times on a core with processes that wait for events, which is one without servers and blocking."""
+        found = []
+        for response, task in zip(bounds, tasks, strict=True):
+            waiting = self.context.waiting.get(task.name)
+            if waiting is not None:
+                others = [other for other in tasks if other is not task and other.priority >= task.priority]
+                response = shorter_by_segments(response, task, waiting, Interference.of(others))
+            found.append(beside_waits(response, task))
+        return found
 
     def _with_longest_paths(self, tasks: Sequence[AnalysedTask]) -> list[AnalysedTask]:
         """The tasks, and for those that exclude each other one that takes as long as the longest path of the job that triggers them."""

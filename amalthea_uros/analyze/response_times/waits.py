@@ -9,6 +9,11 @@ W.-H. Huang and others, "Many suspensions, many problems: a review of self-suspe
 as long as if waiting were executing. That holds for fixed priorities with preemption. Elsewhere, what is not preempted could keep a
 job off again after each wait, and a budget could be used up meanwhile: then the wait has no bound here.
 
+A job that ends before the next one is activated can also be seen in segments: each part between its waits is a job of its own, which
+begins when the wait ends. At that time nothing of it has been executed since others of its level became busy, so that it ends within
+one window of that part; the waits take their time in between, and nothing that executes meanwhile adds to them (segmented
+self-suspension, ibid., section 5). The shorter of the two bounds counts.
+
 Who polls for an event keeps off what has no higher rank on its core. If that sets the event, nobody ever does.
 
 A job that its waiting process has triggered finds the one before it completed, if setting the event is the last thing that it does.
@@ -20,6 +25,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from amalthea_uros.analyze.response_times.blocking import Blocking
+from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import AnalysedTask
 from amalthea_uros.errors import UnknownError
@@ -27,12 +33,13 @@ from amalthea_uros.perf.software import Task
 from amalthea_uros.timing.basics.time_base import MAX_INPUT, to_ticks
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import NOTHING, DemandFrame, MultiframeDemand
-from amalthea_uros.timing.response import Response
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
-from amalthea_uros.timing.waits import WITHOUT_BOUND, AwaitedEvent
+from amalthea_uros.timing.waits import WITHOUT_BOUND, AwaitedEvent, WaitingProcess
 from amalthea_uros.units import Time
 
 SOURCE = "Chen, Nelissen, Huang and others 2019"
+SEGMENTS = "busy windows between waits, fixed priorities, preemptive"
 
 
 def reasons_besides_waits(context: TimingContext) -> dict[str, str]:
@@ -128,6 +135,36 @@ def _can_lose(name: str, awaited: AwaitedEvent, solution: Solution, responses: M
     if found is None or events is None:
         return False
     return found.worst is None or events.eta_plus(found.worst) > limit
+
+
+def shorter_by_segments(response: Response, task: AnalysedTask, waiting: WaitingProcess, higher: Interference) -> Response:
+    """The response time of a process that waits, by the windows of its segments if that bound is shorter.
+
+    Parameters
+    ----------
+    response : the one with waiting as execution
+    higher : all others of its rank and above, on a core where all are preempted at once
+    """
+    if higher.overloads_with(replace(task, demand=waiting.demand)):
+        return response
+    windows = [higher.window(segment, 0) for segment in waiting.segments]
+    if None in windows:
+        return response
+    executing = sum(window for window in windows if window is not None)
+    wait = task.demand.worst - waiting.demand.worst
+    worst = executing + wait
+    if worst > task.events.delta_min(2) or (response.worst is not None and response.worst <= worst):
+        return response
+    own = task.demand.worst
+    return Response(
+        worst=worst,
+        best=response.best,
+        method=SEGMENTS,
+        source="Lehoczky 1990",
+        claim=Claim.BOUND,
+        window=worst,
+        terms={"own": own, "interference": worst - own, "blocking": 0},
+    )
 
 
 def beside_waits(response: Response, task: AnalysedTask) -> Response:
