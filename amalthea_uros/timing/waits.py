@@ -66,6 +66,11 @@ class WaitingProcess:
     demand: MultiframeDemand
     segments: Sequence[Ticks]
 
+    @property
+    def polls(self) -> bool:
+        """Whether it may keep its core while it waits."""
+        return any(each.is_active for each in self.awaited)
+
     @classmethod
     def of(
         cls, process: Process, awaited: Sequence[AwaitedEvent], demand: MultiframeDemand, model: DemandModel, core: str

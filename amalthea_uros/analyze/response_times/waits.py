@@ -147,10 +147,14 @@ def shorter_by_segments(response: Response, task: AnalysedTask, waiting: Waiting
     """
     if higher.overloads_with(replace(task, demand=waiting.demand)):
         return response
-    windows = [higher.window(segment, 0) for segment in waiting.segments]
-    if None in windows:
-        return response
-    executing = sum(window for window in windows if window is not None)
+    # What a job does at the end of a segment takes no time, but it may do so only when it has the core again.
+    *until_waits, last = waiting.segments
+    windows = [*(higher.window(segment + 1, 0) for segment in until_waits), higher.window(last, 0)]
+    executing = -len(until_waits)
+    for window in windows:
+        if window is None:
+            return response
+        executing += window
     wait = task.demand.worst - waiting.demand.worst
     worst = executing + wait
     if worst > task.events.delta_min(2) or (response.worst is not None and response.worst <= worst):
