@@ -94,6 +94,7 @@ def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
     """The load of a core by some of its processes."""
     context = solution.context
     demands = {name: _demand(name, context) for name in names}
+    # What triggers the processes of a core need not be on it.
     model = context.executing if context.waiting else context.demand_model
     return CoreLoad(core, demands, context.activations, model).load(solution.external_rates)
 

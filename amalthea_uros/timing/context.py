@@ -313,6 +313,10 @@ class TimingContext:
         """Converts activities to execution demand, without the time for which jobs wait for events."""
         return DemandModel(self.system, self.notes, self.settings, ignores_waits=True)
 
+    def execution_model(self, process: str) -> DemandModel:
+        """Converts activities of a process of known demand to execution demand; what it waits for is apart."""
+        return self.executing if process in self.waiting else self.demand_model
+
     @cached_property
     def _scheduler_of(self) -> dict[str, str]:
         """The scheduler of each task; the first one if it is allocated more than once."""
