@@ -14,6 +14,7 @@ from amalthea_uros.analyze.response_times.constant_schedule import constant_resp
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_best_cases import raised
 from amalthea_uros.analyze.response_times.known_offsets import tightened
+from amalthea_uros.analyze.response_times.several_cores import responses_on_several_cores
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.waits import bound_waits, note_unknown_waits, reasons_besides_waits
 from amalthea_uros.errors import UnknownError
@@ -38,7 +39,7 @@ MAX_JOBS = 50_000
 
 def solve(context: TimingContext) -> Solution:
     """All response times, computed until they no longer change activations."""
-    solution = Solution(context, reasons=reasons_besides_waits(context))
+    solution = Solution(context, reasons=reasons_besides_waits(context), migrating=responses_on_several_cores(context))
     diverging: set[str] = set()
     while True:
         changing = _iterate(solution, diverging)
