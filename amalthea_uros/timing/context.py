@@ -215,7 +215,7 @@ class TimingContext:
         """Whether a process of a core executes at times that its activations do not determine.
 
         When the rounds of an executor that spins in a loop begin depends on what they do, and when a job that waits for events
-        goes on depends on others.
+        resumes depends on other processes.
         """
         return self.has_waits(core) or any(item.name in self.system.executor_of_task for item in self.on_core(core))
 

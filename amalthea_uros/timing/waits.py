@@ -42,7 +42,7 @@ class AwaitedEvent:
     setter : the process that sets it in each job
     gap : longest time from any moment to the next activation of a periodic setter; None: the job that waits triggers it
     is_last : whether setting it is the last activity of the setter
-    is_active : whether who waits keeps its core, or nobody states that it does not
+    is_active : whether who waits keeps its core, or may do so
     """
 
     event: str
@@ -100,13 +100,13 @@ def awaited_events(process: Process, activations: Activations) -> Sequence[Await
         return ()
     try:
         search = _Search(process, activations, activations.dataflow.events.positions(process.name))
-        found = [search.awaited(wait, event) for wait in search.waits() for event in names_of(wait)]
-        for name in (process.name, *(each.setter for each in found)):
+        awaited = [search.awaited(wait, event) for wait in search.waits() for event in names_of(wait)]
+        for name in (process.name, *(each.setter for each in awaited)):
             if name in system.executor_of_task:
-                raise UnknownError(f"{name!r} executes the rounds of an executor")
+                raise UnknownError(f"{name!r} is the task of an executor")
     except UnknownError as error:
         raise UnknownError(f"{WITHOUT_BOUND}: {error}") from error
-    return found
+    return awaited
 
 
 def names_of(position: ActivityPosition) -> tuple[str, ...]:
@@ -152,20 +152,20 @@ class _Search:
 
     def _only_setting(self, event: str) -> ActivityPosition:
         """The only place where an event of the process is set."""
-        found = [
+        places = [
             position
             for position in self.activations.dataflow.events.all_positions()
             if isinstance(position.activity, SetEvent)
             and event in position.activity.events
             and position.activity.process in (None, self.process.name)
         ]
-        if not found:
+        if not places:
             raise UnknownError(f"no process sets the event {event!r}")
-        if len(found) > 1:
-            raise UnknownError(f"the event {event!r} is set in {len(found)} places")
-        if found[0].process.name == self.process.name or not _is_in_each_job(found[0]):
-            raise UnknownError(f"not each job of {found[0].process.name!r} sets the event {event!r} exactly once for it")
-        return found[0]
+        if len(places) > 1:
+            raise UnknownError(f"the event {event!r} is set in {len(places)} places")
+        if places[0].process.name == self.process.name or not _is_in_each_job(places[0]):
+            raise UnknownError(f"not each job of {places[0].process.name!r} sets the event {event!r} exactly once for it")
+        return places[0]
 
     def _require_round_trip(self, wait: ActivityPosition, event: str, setter: Process, stimulus: InterProcess) -> None:
         """Refuse a setter that other jobs trigger, too, or not each job, and an event that can be cleared too early or never."""

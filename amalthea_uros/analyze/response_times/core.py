@@ -221,14 +221,14 @@ class _CoreAnalysis:
 
     def _beside_waits(self, bounds: Sequence[Response], tasks: Sequence[AnalysedTask]) -> list[Response]:
         """The response times on a core with processes that wait for events, which is one without servers and blocking."""
-        found = []
+        results = []
         for response, task in zip(bounds, tasks, strict=True):
             waiting = self.context.waiting.get(task.name)
             if waiting is not None:
                 others = [other for other in tasks if other is not task and other.priority >= task.priority]
                 response = shorter_by_segments(response, task, waiting, Interference.of(others))
-            found.append(beside_waits(response, task))
-        return found
+            results.append(beside_waits(response, task))
+        return results
 
     def _with_longest_paths(self, tasks: Sequence[AnalysedTask]) -> list[AnalysedTask]:
         """The tasks, and for those that exclude each other one that takes as long as the longest path of the job that triggers them."""

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.response_times.known_best_cases import raised
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.response_times.several_cores import responses_on_several_cores
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.response_times.waits import bound_waits, note_unknown_waits, reasons_besides_waits
+from amalthea_uros.analyze.response_times.waits import bound_waits, warn_of_unknown_waits, reasons_besides_waits
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.occurrences import ExecutorOccurrences, least_occurrences, occurrences
 from amalthea_uros.executors.semantics.loops import sleep_of, why_deferred, why_dense, workload
@@ -47,7 +47,7 @@ def solve(context: TimingContext) -> Solution:
             for core in context.system.cores:
                 solution.responses |= constant_responses(core, solution) or tightened(core, solution)
                 solution.responses |= raised(core, solution)
-            note_unknown_waits(solution)
+            warn_of_unknown_waits(solution)
             return solution
         # Without the diverging processes and those that depend on them, the others can converge.
         diverging |= changing

@@ -87,7 +87,7 @@ class MigratingResult:
 
 def responses_on_several_cores(context: TimingContext) -> dict[str, MigratingResult]:
     """The response times of the tasks of all schedulers to which the method applies."""
-    found: dict[str, MigratingResult] = {}
+    results: dict[str, MigratingResult] = {}
     for scheduler in context.system.schedulers.values():
         if len(set(scheduler.cores)) < 2 or scheduler.parent is not None:
             continue
@@ -100,8 +100,8 @@ def responses_on_several_cores(context: TimingContext) -> dict[str, MigratingRes
             context.notes.assume(ASSUMPTION)
         time_base = context.demand_model.time_base(scheduler.cores[0])
         for task, response in zip(tasks, response_times(tasks, len(set(scheduler.cores))), strict=True):
-            found[task.name] = MigratingResult(in_picoseconds(response, time_base), task.demand, task.events, time_base)
-    return found
+            results[task.name] = MigratingResult(in_picoseconds(response, time_base), task.demand, task.events, time_base)
+    return results
 
 
 def _tasks(name: str, context: TimingContext) -> Sequence[MigratingTask]:
@@ -171,11 +171,11 @@ def response_times(tasks: Sequence[MigratingTask], cores: int) -> Iterator[Respo
     reason = ""
     for number, task in enumerate(tasks):
         if not reason:
-            found = _response(task, tasks[:number], known, cores)
-            if found is None:
+            bound = _response(task, tasks[:number], known, cores)
+            if bound is None:
                 reason = f"it need not end before its next activation, where the analysis of {cores} cores has no bound"
             else:
-                known[task.name] = found
+                known[task.name] = bound
         worst = None if reason else known[task.name]
         yield Response(
             worst=worst,
@@ -192,16 +192,16 @@ def response_times(tasks: Sequence[MigratingTask], cores: int) -> Iterator[Respo
 
 
 def _response(task: MigratingTask, higher: Sequence[MigratingTask], known: Mapping[str, Time], cores: int) -> Time | None:
-    """The response time of a task below others of known ones; None if it can be longer than the distance of activations."""
+    """The response time of a task below tasks of known ones; None if it can be longer than the distance of activations."""
     window = task.longest
     for _ in range(MAX_STEPS):
         if window > task.distance:
             return None
         load = _LevelLoad.of(window, higher, known)
-        kept_off = load.least_time(window - task.longest + 1, cores)
-        if task.longest + kept_off - 1 == window:
+        delay = load.least_time(window - task.longest + 1, cores)
+        if task.longest + delay - 1 == window:
             return window
-        window = task.longest + kept_off - 1
+        window = task.longest + delay - 1
     return None
 
 
@@ -217,7 +217,7 @@ class _LevelLoad:
         return cls([(each.without_carry_in(window), each.with_carry_in(window, known[each.name])) for each in higher])
 
     def interference(self, most: Time, cores: int) -> Time:
-        """What keeps a job from executing, on all cores together, if no task counts for more than a time."""
+        """The time for which cores are busy with other tasks, on all cores together, if no task counts for more than a time."""
         fresh = [min(without, most) for without, _ in self.amounts]
         more = sorted((max(0, min(brought, most) - min(without, most)) for without, brought in self.amounts), reverse=True)
         return sum(fresh) + sum(more[: cores - 1])

@@ -10,11 +10,11 @@ as long as if waiting were executing. That holds for fixed priorities with preem
 job off again after each wait, and a budget could be used up meanwhile: then the wait has no bound here.
 
 A job that ends before the next one is activated can also be seen in segments: each part between its waits is a job of its own, which
-begins when the wait ends. At that time nothing of it has been executed since others of its level became busy, so that it ends within
+begins when the wait ends. At that time nothing of it has been executed since interfering tasks became busy, so that it ends within
 one window of that part; the waits take their time in between, and nothing that executes meanwhile adds to them (segmented
 self-suspension, ibid., section 5). The shorter of the two bounds counts.
 
-Who polls for an event keeps off what has no higher rank on its core. If that sets the event, nobody ever does.
+Who polls for an event delays everything without a higher rank on its core. If that sets the event, nobody ever does.
 
 A job that its waiting process has triggered finds the one before it completed, if setting the event is the last thing that it does.
 """
@@ -66,7 +66,7 @@ def bound_waits(solution: Solution, responses: Mapping[str, Response]) -> None:
         context.demands[name] = MultiframeDemand((*waiting.demand.frames, wait))
 
 
-def note_unknown_waits(solution: Solution) -> None:
+def warn_of_unknown_waits(solution: Solution) -> None:
     """Report the processes of which the time for which they wait has no bound."""
     context = solution.context
     for name in context.waiting:
@@ -91,10 +91,10 @@ def _require_supported(item: ScheduledProcess, context: TimingContext) -> None:
     elif any(other.name in context.system.executor_of_task for other in processes):
         reason = "an executor spins in a loop on its core"
     else:
-        found = Blocking(processes, context.stretches, context.protection)
-        keeping_off = next((other.name for other in processes if found.keeps_off_others(other)), None)
-        if keeping_off is not None:
-            reason = f"{keeping_off!r} on its core cannot be preempted everywhere"
+        blocking = Blocking(processes, context.stretches, context.protection)
+        blocker = next((other.name for other in processes if blocking.keeps_off_others(other)), None)
+        if blocker is not None:
+            reason = f"{blocker!r} on its core cannot be preempted everywhere"
     if reason:
         raise UnknownError(f"it waits for events, for which the analysis has no bound, because {reason}")
 
@@ -110,14 +110,14 @@ def _longest(name: str, awaited: AwaitedEvent, solution: Solution, responses: Ma
         raise UnknownError(
             f"{waits}: it polls for that on the same core, where {setter!r} cannot preempt it, and so never sets it"
         )
-    found = responses.get(setter)
-    if found is None:
+    response = responses.get(setter)
+    if response is None:
         return awaited.gap or 0
-    if found.worst is None:
+    if response.worst is None:
         raise UnknownError(f"{waits}, and that has no bounded response time")
     if _can_lose(name, awaited, solution, responses):
         raise UnknownError(f"{waits}, and that may lose activations")
-    return found.worst + (awaited.gap or 0)
+    return response.worst + (awaited.gap or 0)
 
 
 def _can_lose(name: str, awaited: AwaitedEvent, solution: Solution, responses: Mapping[str, Response]) -> bool:
@@ -131,10 +131,10 @@ def _can_lose(name: str, awaited: AwaitedEvent, solution: Solution, responses: M
     if awaited.gap is None and limit > 1:
         return False
     pending = name if awaited.gap is None else awaited.setter
-    found, events = responses.get(pending), solution.event_models.get(pending)
-    if found is None or events is None:
+    response, events = responses.get(pending), solution.event_models.get(pending)
+    if response is None or events is None:
         return False
-    return found.worst is None or events.eta_plus(found.worst) > limit
+    return response.worst is None or events.eta_plus(response.worst) > limit
 
 
 def shorter_by_segments(response: Response, task: AnalysedTask, waiting: WaitingProcess, higher: Interference) -> Response:
@@ -143,7 +143,7 @@ def shorter_by_segments(response: Response, task: AnalysedTask, waiting: Waiting
     Parameters
     ----------
     response : the one with waiting as execution
-    higher : all others of its rank and above, on a core where all are preempted at once
+    higher : all interfering tasks, of its rank and above, on a core where all are preempted at once
     """
     if higher.overloads_with(replace(task, demand=waiting.demand)):
         return response
