@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 from effort import examples
+from fuzzing.contradictions import contradictions
 from hand_made_systems import Proc, locked, of_parts, system, ticks
 from hypothesis import given
 from hypothesis import strategies as st
@@ -19,6 +20,7 @@ from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 
 
@@ -117,12 +119,15 @@ ROWS = st.integers(4, 12).flatmap(
 @examples(200)
 def test_no_job_is_later_than_its_bound(rows, cores, seed):
     model = built(rows, cores)
-    found = bounds(analyze_system(model))
+    analysis = analyze_system(model)
+    found = bounds(analysis)
     runs = [play(rows, cores, 400, Random(seed))]
     for shift in product((0, 1), repeat=2):
         moved = [(*row[:3], (row[3] + shift[number % 2] * number) % row[0]) for number, row in enumerate(rows)]
         runs.append(play(moved, cores, 400, Random(seed)))
-    recording = record(model, Options(duration=300 * US, seed=seed))
+    options = Options(duration=300 * US, seed=seed)
+    recording = record(model, options)
+    assert list(contradictions(analysis, simulate_system(model, options))) == []
     simulated = [[end - begin for begin, _, end in recording.jobs_of(f"T{number}")] for number in range(len(rows))]
     runs.append([max(times, default=0) / US for times in simulated])
     for run in runs:

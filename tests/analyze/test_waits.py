@@ -4,6 +4,7 @@ from random import Random
 
 import pytest
 from effort import examples
+from fuzzing.contradictions import contradictions
 from hand_made_systems import Proc, system, ticks
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,6 +15,7 @@ from amalthea_uros import analyze_system
 from amalthea_uros.perf.activities import ClearEvent, SetEvent, Trigger, WaitEvent, Waiting
 from amalthea_uros.perf.software import OsEvent
 from amalthea_uros.simulate.options import Options
+from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 
 PASSIVE, ACTIVE = Waiting.PASSIVE, Waiting.ACTIVE
@@ -201,7 +203,9 @@ def test_no_job_of_any_run_is_beyond_its_bounds(drawn):
         if found[task.name].response is not None and found[task.name].response.worst is not None
     }
     players = [Player(tasks, Random(number)).play(600) for number in range(seed, seed + 4)]
-    recording = record(model, Options(duration=600 * US, seed=seed))
+    options = Options(duration=600 * US, seed=seed)
+    recording = record(model, options)
+    assert list(contradictions(found, simulate_system(model, options))) == []
     runs = [player.found for player in players]
     runs.append({task.name: [(end - begin) // US for begin, _, end in recording.jobs_of(task.name)] for task in tasks})
     for run in runs:

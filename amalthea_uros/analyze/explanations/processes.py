@@ -243,9 +243,7 @@ class _OriginSearch:
 
     def of(self, name: str) -> Iterator[Origin]:
         response = self.solution.responses.get(name)
-        if name in self.solution.migrating and self.solution.migrating[name].response.worst is not None:
-            return
-        if name in self.visited or (response is not None and response.worst is not None):
+        if name in self.solution.migrating or name in self.visited or (response is not None and response.worst is not None):
             return
         self.visited.add(name)
         if response is not None:

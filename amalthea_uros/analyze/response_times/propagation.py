@@ -39,7 +39,10 @@ MAX_JOBS = 50_000
 
 def solve(context: TimingContext) -> Solution:
     """All response times, computed until they no longer change activations."""
-    solution = Solution(context, reasons=reasons_besides_waits(context), migrating=responses_on_several_cores(context))
+    migrating = responses_on_several_cores(context)
+    unbounded = {name: each.response.reason for name, each in migrating.items() if each.response.worst is None}
+    bounded = {name: each for name, each in migrating.items() if name not in unbounded}
+    solution = Solution(context, reasons={**reasons_besides_waits(context), **unbounded}, migrating=bounded)
     diverging: set[str] = set()
     while True:
         changing = _iterate(solution, diverging)
