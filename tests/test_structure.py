@@ -21,7 +21,7 @@ LINES = {
     "_internal": 774,
     "_version": 1,
     "am": 2,
-    "analyze": 8521,
+    "analyze": 8522,
     "bridge": 2844,
     "cli": 2333,
     "compare": 3443,

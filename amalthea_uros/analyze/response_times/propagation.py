@@ -16,7 +16,7 @@ from amalthea_uros.analyze.response_times.known_best_cases import raised
 from amalthea_uros.analyze.response_times.known_offsets import tightened
 from amalthea_uros.analyze.response_times.several_cores import responses_on_several_cores
 from amalthea_uros.analyze.response_times.solution import Solution
-from amalthea_uros.analyze.response_times.waits import bound_waits, warn_of_unknown_waits, reasons_besides_waits
+from amalthea_uros.analyze.response_times.waits import bound_waits, reasons_besides_waits, warn_of_unknown_waits
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.occurrences import ExecutorOccurrences, least_occurrences, occurrences
 from amalthea_uros.executors.semantics.loops import sleep_of, why_deferred, why_dense, workload
