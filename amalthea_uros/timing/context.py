@@ -315,7 +315,7 @@ class TimingContext:
 
     def execution_model(self, process: str) -> DemandModel:
         """Converts activities of a process of known demand to execution demand; what it waits for is apart."""
-        return self.executing if process in self.waiting else self.demand_model
+        return self.executing if process in self.waiting and process in self.demands else self.demand_model
 
     @cached_property
     def _scheduler_of(self) -> dict[str, str]:

@@ -96,6 +96,7 @@ class TestByHand:
         found = analyze_system(offload())
         assert (found["P"].bcet, found["P"].wcet) == (5 * US, 5 * US)
         assert found["P"].verdict == "met"
+        assert found["P"].response.terms["waits for events"] == 10 * US
 
 
 class TestWhatMayWaitForEver:

@@ -227,7 +227,7 @@ class _CoreAnalysis:
             if waiting is not None:
                 others = [other for other in tasks if other is not task and other.priority >= task.priority]
                 response = shorter_by_segments(response, task, waiting, Interference.of(others))
-            results.append(beside_waits(response, task))
+            results.append(beside_waits(response, task, waiting))
         return results
 
     def _with_longest_paths(self, tasks: Sequence[AnalysedTask]) -> list[AnalysedTask]:

@@ -171,16 +171,21 @@ def shorter_by_segments(response: Response, task: AnalysedTask, waiting: Waiting
     )
 
 
-def beside_waits(response: Response, task: AnalysedTask) -> Response:
+def beside_waits(response: Response, task: AnalysedTask, waiting: WaitingProcess | None) -> Response:
     """A response time on a core with processes that wait: others can execute meanwhile, and no wait is certain to be as long."""
     reason = response.reason
     if response.is_overload:
         reason = f"{reason}, if each wait for an event takes as long as it can"
+    terms = response.terms
+    if waiting is not None and terms.get("own") == task.demand.worst:
+        own = waiting.demand.worst
+        terms = {**terms, "own": own, "waits for events": task.demand.worst - own}
     # Who waits is late with the rest of its job, so that later jobs do not end at their usual distances.
     return replace(
         response,
         best=task.demand.best,
         completions=(),
+        terms=terms,
         source=f"{response.source}; waits: {SOURCE}",
         is_overload=False,
         reason=reason,
