@@ -25,7 +25,7 @@ from amalthea_uros.units import Time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExportResult(Brief):
+class ExportedModel(Brief):
     """A model in the language of another tool.
 
     Attributes
@@ -42,7 +42,7 @@ class ExportResult(Brief):
     findings: tuple[Finding, ...]
 
 
-def export(paths: StrPath | Iterable[StrPath], target: StrPath, ids: UUID = NAMESPACE, *, write: bool = True) -> ExportResult:
+def export(paths: StrPath | Iterable[StrPath], target: StrPath, ids: UUID = NAMESPACE, *, write: bool = True) -> ExportedModel:
     """Write models, or an `app.yaml`, as an INCHRON project; and a project, if that is given, as an AMALTHEA model.
 
     Parameters
@@ -71,7 +71,7 @@ def export(paths: StrPath | Iterable[StrPath], target: StrPath, ids: UUID = NAME
     if write:
         save_text(target, text)
     result = unsuppressed((*opened.findings, *findings))
-    return ExportResult(paths=opened.paths, target=target, text=text, findings=result)
+    return ExportedModel(paths=opened.paths, target=target, text=text, findings=result)
 
 
 def _project_text(opened: SystemInput, ids: UUID) -> tuple[str, tuple[Finding, ...]]:
