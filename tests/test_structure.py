@@ -21,7 +21,7 @@ LINES = {
     "_internal": 774,
     "_version": 1,
     "am": 2,
-    "analyze": 8522,
+    "analyze": 8527,
     "bridge": 2844,
     "cli": 2333,
     "compare": 3443,
