@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from typing import ClassVar, TypeAlias
 
+from amalthea_uros.trace.ctf.decoding import Fields
 from amalthea_uros.trace.ctf.streams import CtfEvent
 from amalthea_uros.trace.files import TraceProblems
 from amalthea_uros.trace.reading import EventRows
@@ -58,13 +60,38 @@ class Interpreter:
 
 # The scheduler of Linux, as the kernel tracer of LTTng records it.
 
+
+@dataclass(slots=True)
+class LinuxThread:
+    """How a thread was seen to be scheduled.
+
+    Attributes
+    ----------
+    priorities : less the 100 real-time priorities of the kernel, as LTTng records them (lttng-modules, events/sched.h): from 0 on, those of
+        threads without one; -1 to -100, those of real-time priorities 0 to 99; less, of deadlines
+    cores : on which it was switched in
+    """
+
+    priorities: set[int] = field(default_factory=set)
+    cores: set[int] = field(default_factory=set)
+
+
 #: Of `prev_state`: 0 is ready, and so is what the kernel adds for a preemption; ended threads have these bits.
 _PREEMPTED = 0x100
 _ENDED = 0x10 | 0x20 | 0x80
 
 
 class LinuxScheduler(Interpreter):
-    """Takes the events of the scheduler and of interrupts."""
+    """Takes the events of the scheduler and of interrupts.
+
+    Attributes
+    ----------
+    threads : by their numbers
+    """
+
+    def __init__(self, rows: EventRows, states: ThreadStates, problems: TraceProblems, names: UniqueNames) -> None:
+        super().__init__(rows, states, problems, names)
+        self.threads: dict[int, LinuxThread] = {}
 
     def _switch(self, event: CtfEvent) -> None:
         fields, core = event.fields, self._core(event.core)
@@ -73,6 +100,15 @@ class LinuxScheduler(Interpreter):
             self._states.switch_out(core, before, _leaving(fields.get("prev_state", 0)))
         if after is not None:
             self._states.switch_in(core, after)
+            self._note(fields, event.core)
+
+    def _note(self, fields: Fields, core: int | None) -> None:
+        thread, priority = fields.get("next_tid", 0), fields.get("next_prio")
+        found = self.threads.setdefault(thread, LinuxThread()) if isinstance(thread, int) else LinuxThread()
+        if isinstance(priority, int):
+            found.priorities.add(priority)
+        if core is not None:
+            found.cores.add(core)
 
     def _waking(self, event: CtfEvent) -> None:
         thread = self._thread(event.fields, "")
