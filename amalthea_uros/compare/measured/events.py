@@ -20,6 +20,7 @@ from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.table import EventKind
 
 if TYPE_CHECKING:
+    from amalthea_uros.trace.reading import TraceReader
     from amalthea_uros.trace.table import EventTable
 
 
@@ -90,13 +91,17 @@ def measured_events(path: Path, window: MeasurementWindow, begins: ModelBegins) 
     ReadError : the file cannot be read.
     InvalidArgumentError : its format is not known.
     """
+    return measured_by(open_trace(path), path, window, begins)
+
+
+def measured_by(reader: TraceReader, path: Path, window: MeasurementWindow, begins: ModelBegins) -> Measurement:
+    """Measure what a reader gives; parameters and errors as for `measured_events`."""
     import numpy as np
 
     from amalthea_uros.measure.chains import ChainSteps
     from amalthea_uros.measure.jobs import JobFollower
     from amalthea_uros.measure.window import resolution_of
 
-    reader = open_trace(path)
     jobs, chains = JobFollower(begins=begins), ChainSteps(begins.chains)
     origin: int | None = None
     times = []

@@ -25,12 +25,14 @@ class CtfReader(TraceReader):
     Attributes
     ----------
     ros2, scheduler : what the events of ROS 2 and of Linux say, when they have been read; None if there are none
+    computers : the names of those that were recorded, as keys
     """
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
         self.ros2: Ros2 | None = None
         self.scheduler: LinuxScheduler | None = None
+        self.computers: dict[str, None] = {}
         self._of_files: list[TraceProblems] = []
         self._rows = EventRows(self._index, self._problems)
         self._states = ThreadStates(self._rows, self._problems)
@@ -52,6 +54,7 @@ class CtfReader(TraceReader):
             raise ReadError(self.findings)
         interpreters = _interpreters(self._rows, self._states, self._problems, [metadata for _, metadata in traces])
         self._keep(interpreters.values())
+        self.computers |= dict.fromkeys(str(each.environment.get("hostname", "")) for _, each in traces)
         streams = [
             PacketStream(path, metadata, self._problems_of(path))
             for folder, metadata in traces
