@@ -86,7 +86,7 @@ def log(recording: Recording, random: Random, busy: list[tuple[int, int]], logs:
     """What the logger executes while the planner does not: when it does."""
     parts = []
     for stamp in logs:
-        left, now = random.randrange(5000, 9000) * US, stamp + 100 * US
+        left, now = random.randrange(16000, 21000) * US, stamp + 100 * US
         start = now
         while left:
             until = min((first for first, _ in busy if first > now), default=now + left)

@@ -17,6 +17,7 @@ _REAL_TIME = range(-100, -1)
 _HEAD = (
     "# Imported from a recording of ros2_tracing. Each TODO is a value that it cannot tell: replace all of them, then run amuros check.",
     "# Execution times and rates are those of the recording, and no bounds: results are bounds only as far as these are never exceeded.",
+    "# An execution time is what a call took its thread since the end of the call before, with polling and taking the message.",
     "# Callback groups, and variables that callbacks share (reads, writes), are not recorded.",
 )
 
@@ -128,12 +129,14 @@ def _burst(recorded: RecordedCallback) -> str:
 
 
 def _execution_time(recorded: RecordedCallback) -> str:
-    durations = recorded.durations
+    busy, durations = recorded.callback.busy, recorded.durations
+    if busy:
+        calls = counted(len(busy), "call")
+        return f"{{min: {time_text(min(busy))}, max: {time_text(max(busy))}}} # measured in {calls}; no bound"
     if durations is None:
-        return f"{GAP} # it was not called; remove it if it never is"
-    how = "without preemption" if recorded.is_net else "with preemption, as the scheduler was not recorded"
+        return f"{GAP} # no call of it was recorded; remove it if it is never called"
     calls = counted(durations.count, "call")
-    return f"{{min: {time_text(durations.min)}, max: {time_text(durations.max)}}} # measured in {calls}, {how}; no bound"
+    return f"{GAP} # {_range(durations)} in {calls}, with preemption, and without what the executor does before"
 
 
 def _range(durations: TimeStatistics | None) -> str:

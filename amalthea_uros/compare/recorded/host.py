@@ -31,13 +31,11 @@ class RecordedCallback:
 
     Attributes
     ----------
-    durations : of its executions, None if there is no complete one
-    is_net : whether preemption is left out of the durations
+    durations : from begin to end, with preemption; None if there is no complete execution
     """
 
     callback: RosCallback
     durations: TimeStatistics | None
-    is_net: bool
 
     @property
     def name(self) -> str:
@@ -134,7 +132,7 @@ def read_recording(path: Path) -> RecordedHost:
             f"{path.name!r} has no callbacks of ROS 2; record the events 'ros2:*' with 'ros2 trace' before the nodes are started"
         )
     scheduled = {} if reader.scheduler is None else reader.scheduler.threads
-    recorded = [_measured(each, measurement, scheduled) for each in callbacks]
+    recorded = [_measured(each, measurement) for each in callbacks]
     threads = {
         number: RecordedThread(number=number, name=ros2.thread_name(number), scheduled=scheduled.get(number))
         for each in callbacks
@@ -155,14 +153,10 @@ def read_recording(path: Path) -> RecordedHost:
     )
 
 
-def _measured(callback: RosCallback, measurement: Measurement, scheduled: Mapping[int, LinuxThread]) -> RecordedCallback:
-    is_net = bool(callback.threads) and callback.threads.keys() <= scheduled.keys()
-    quantity = JobMetric.NET_EXECUTION_TIME if is_net else JobMetric.GROSS_EXECUTION_TIME
-    wanted = MeasuredKind.RUNNABLE, callback.name, quantity
+def _measured(callback: RosCallback, measurement: Measurement) -> RecordedCallback:
+    wanted = MeasuredKind.RUNNABLE, callback.name, JobMetric.GROSS_EXECUTION_TIME
     series = (each for each in measurement.series if (each.kind, each.name, each.quantity) == wanted)
-    return RecordedCallback(
-        callback=callback, durations=next((each.statistics for each in series), None), is_net=is_net
-    )
+    return RecordedCallback(callback=callback, durations=next((each.statistics for each in series), None))
 
 
 def _executors(callbacks: Iterable[RecordedCallback], threads: Mapping[int, RecordedThread]) -> list[RecordedExecutor]:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import ClassVar, TypeAlias
 
-from amalthea_uros.trace.ctf.decoding import Fields
 from amalthea_uros.trace.ctf.streams import CtfEvent
 from amalthea_uros.trace.files import TraceProblems
 from amalthea_uros.trace.reading import EventRows
@@ -70,10 +69,23 @@ class LinuxThread:
     priorities : less the 100 real-time priorities of the kernel, as LTTng records them (lttng-modules, events/sched.h): from 0 on, those of
         threads without one; -1 to -100, those of real-time priorities 0 to 99; less, of deadlines
     cores : on which it was switched in
+    ran : how long it has run, up to `since`
+    since : when it was switched in; None if it does not run, or if that is not known
     """
 
     priorities: set[int] = field(default_factory=set)
     cores: set[int] = field(default_factory=set)
+    ran: int = 0
+    since: int | None = None
+
+    def leave(self, time: int) -> None:
+        """It is switched out."""
+        self.ran += 0 if self.since is None else time - self.since
+        self.since = None
+
+    def ran_until(self, time: int) -> int | None:
+        """How long it has run, None if it is not known to run now."""
+        return None if self.since is None else self.ran + time - self.since
 
 
 #: Of `prev_state`: 0 is ready, and so is what the kernel adds for a preemption; ended threads have these bits.
@@ -96,19 +108,26 @@ class LinuxScheduler(Interpreter):
     def _switch(self, event: CtfEvent) -> None:
         fields, core = event.fields, self._core(event.core)
         before, after = self._thread(fields, "prev_"), self._thread(fields, "next_")
+        self._note(event)
         if before is not None:
             self._states.switch_out(core, before, _leaving(fields.get("prev_state", 0)))
         if after is not None:
             self._states.switch_in(core, after)
-            self._note(fields, event.core)
 
-    def _note(self, fields: Fields, core: int | None) -> None:
-        thread, priority = fields.get("next_tid", 0), fields.get("next_prio")
-        found = self.threads.setdefault(thread, LinuxThread()) if isinstance(thread, int) else LinuxThread()
-        if isinstance(priority, int):
-            found.priorities.add(priority)
-        if core is not None:
-            found.cores.add(core)
+    def lose(self) -> None:
+        """Forget which threads run."""
+        for thread in self.threads.values():
+            thread.since = None
+
+    def _note(self, event: CtfEvent) -> None:
+        before, after = (event.fields.get(f"{prefix}_tid") for prefix in ("prev", "next"))
+        if isinstance(before, int) and before in self.threads:
+            self.threads[before].leave(event.time)
+        if isinstance(after, int) and after:
+            found = self.threads.setdefault(after, LinuxThread())
+            found.since, priority = event.time, event.fields.get("next_prio")
+            found.priorities |= {priority} if isinstance(priority, int) else set()
+            found.cores |= {event.core} if event.core is not None else set()
 
     def _waking(self, event: CtfEvent) -> None:
         thread = self._thread(event.fields, "")

@@ -16,7 +16,7 @@ from amalthea_uros.trace.files import METADATA, TracePlace, TraceProblems, Unrea
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates
-from amalthea_uros.trace.table import NO_NOTE
+from amalthea_uros.trace.table import NO_NOTE, EventKind
 
 
 class CtfReader(TraceReader):
@@ -27,6 +27,9 @@ class CtfReader(TraceReader):
     ros2, scheduler : what the events of ROS 2 and of Linux say, when they have been read; None if there are none
     computers : the names of those that were recorded, as keys
     """
+
+    #: Those of ROS 2 begin with a publication.
+    begin_of_chains = EventKind.CHAIN_STEP
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
@@ -71,8 +74,7 @@ class CtfReader(TraceReader):
         if not event.name:
             if self._rows.move_to(event.time, number, TracePlace()):
                 self._states.lose(lost=NO_NOTE if event.lost is None else event.lost)
-            if self.ros2 is not None:
-                self.ros2.lose()
+            self._lose()
             return
         interpreter = interpreters.get(event.name)
         if interpreter is None:
@@ -81,6 +83,12 @@ class CtfReader(TraceReader):
             interpreter.add(event)
         else:
             self._states.lose()
+            self._lose()
+
+    def _lose(self) -> None:
+        for each in (self.ros2, self.scheduler):
+            if each is not None:
+                each.lose()
 
     def _keep(self, interpreters: Iterable[Interpreter]) -> None:
         for each in interpreters:
@@ -88,6 +96,8 @@ class CtfReader(TraceReader):
                 self.ros2 = each
             elif isinstance(each, LinuxScheduler):
                 self.scheduler = each
+        if self.ros2 is not None and self.scheduler is not None:
+            self.ros2.threads = self.scheduler.threads
 
     def _traces(self) -> Iterator[tuple[Path, Metadata]]:
         for folder in trace_folders(self._path):

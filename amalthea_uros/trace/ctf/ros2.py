@@ -7,11 +7,12 @@ are matched by the topic and the source stamp of the message; occurrences are nu
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.trace.ctf.interpreters import Handler, Interpreter
+from amalthea_uros.trace.ctf.interpreters import Handler, Interpreter, LinuxThread
 from amalthea_uros.trace.ctf.ros2_objects import RosCallback, RosObjects, RosSubscription, address_of
 from amalthea_uros.trace.ctf.streams import CtfEvent
 from amalthea_uros.trace.files import TracePlace, TraceProblems
@@ -33,11 +34,13 @@ class _RosCall:
     Attributes
     ----------
     runnable : the entity
+    after : how long its thread had run at the end of the call before, or at its own begin; None if neither is known
     published : topic -> number of messages, for each layer that records them
     """
 
     callback: RosCallback
     runnable: int
+    after: int | None
     published: dict[str, Counter[str]] = field(default_factory=dict)
 
     def end(self) -> None:
@@ -54,6 +57,7 @@ class Ros2(Interpreter):
     objects : what was created and called
     outside : the topics of which messages were published outside callbacks
     unnamed : number of messages of publishers that are older than the trace
+    threads : the threads of the kernel by their numbers
     """
 
     def __init__(self, rows: EventRows, states: ThreadStates, problems: TraceProblems, names: UniqueNames) -> None:
@@ -61,10 +65,13 @@ class Ros2(Interpreter):
         self.objects = RosObjects()
         self.outside: set[str] = set()
         self.unnamed = 0
+        self.threads: Mapping[int, LinuxThread] = {}
         self._chains: dict[str, int] = {}
         self._calls: dict[int, list[_RosCall]] = {}
         #: Of each thread the message that it has taken last, of which the callback has not begun.
         self._taken: dict[int, tuple[RosSubscription, int]] = {}
+        #: How long each thread had run at the end of its last call.
+        self._ends: dict[int, int | None] = {}
 
     def callbacks(self) -> tuple[RosCallback, ...]:
         """All callbacks, each with a name of its own; what still executes is counted, too."""
@@ -81,6 +88,7 @@ class Ros2(Interpreter):
                 call.end()
         self._calls.clear()
         self._taken.clear()
+        self._ends.clear()
 
     def thread_name(self, thread: int) -> str:
         """The name of a thread by its number."""
@@ -99,7 +107,10 @@ class Ros2(Interpreter):
             self._rows.add(EventKind.CHAIN_STEP, thread, self._states.job(thread), subscription.chain, count, 1)
         runnable = self._runnable(callback)
         callback.threads[number] += 1
-        self._calls.setdefault(number, []).append(_RosCall(callback, runnable))
+        after = self._ends.get(number)
+        if after is None and number in self.threads:
+            after = self.threads[number].ran_until(event.time)
+        self._calls.setdefault(number, []).append(_RosCall(callback, runnable, after))
         self._states.start_runnable(thread, runnable)
 
     def _callback_end(self, event: CtfEvent) -> None:
@@ -110,8 +121,17 @@ class Ros2(Interpreter):
         else:
             call = calls.pop(index)
             call.end()
+            self._note_busy(call, event)
             runnable = call.runnable
         self._states.end_runnable(self._thread(event), runnable)
+
+    def _note_busy(self, call: _RosCall, event: CtfEvent) -> None:
+        """Note what a call took: how long the thread has run since the one before, with polling and taking the message."""
+        number = _thread_number(event)
+        thread = self.threads.get(number)
+        ran = self._ends[number] = None if thread is None else thread.ran_until(event.time)
+        if ran is not None and call.after is not None:
+            call.callback.busy.append(ran - call.after)
 
     def _published(self, event: CtfEvent, topic: str | None) -> None:
         """Note which callback has published a message."""

@@ -63,6 +63,7 @@ class RosCallback:
     name : in the events of the trace, "" until it is called
     threads : the threads that called it
     published : topic -> the most messages that it published in one call
+    busy : what each call took its thread, in picoseconds; without those of which that is not known
     """
 
     address: RosAddress
@@ -74,6 +75,7 @@ class RosCallback:
     name: str = ""
     threads: Counter[int] = field(default_factory=Counter)
     published: Counter[str] = field(default_factory=Counter)
+    busy: array[int] = field(default_factory=lambda: array("q"))
 
     @property
     def label(self) -> str:
