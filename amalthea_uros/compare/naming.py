@@ -23,6 +23,7 @@ EXAMPLE = "'executor + control=Control_Function.response_time'"
 _SUM = " + "
 #: The quantity of an interval between two markers, of which nothing else is known.
 _DURATION = "duration"
+_WITHOUT_PREEMPTION = (JobMetric.NET_EXECUTION_TIME, JobMetric.RUNNING_TIME)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +114,10 @@ def targets(
     """
     _check(measurement, names, system)
     found = []
+    is_scheduled = any(series.kind is MeasuredKind.PROCESS for series in measurement.series)
     for target in _targets(measurement, names, system):
+        if not is_scheduled and target.name in system.host.callback_names and target.quantity in _WITHOUT_PREEMPTION:
+            target = replace(target, reason="the scheduler was not recorded, so that preemption is part of it")
         is_included = bool({"", target.name} & set(with_overhead))
         if is_included and target.kind is MeasuredKind.PROCESS and target.series.baseline is not None:
             target = replace(target, series=with_baseline(target.series), is_with_baseline=True)

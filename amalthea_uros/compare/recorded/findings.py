@@ -30,4 +30,4 @@ def _messages(host: RecordedHost) -> Iterator[tuple[str, str]]:
         yield f"{topic!r} is published outside callbacks, which a description does not have", topic
     if host.unnamed:
         messages = counted(host.unnamed, "message")
-        yield f"{messages} were published by publishers that are older than the recording; their topics are not known", ""
+        yield f"publishers that are older than the recording sent {messages}; their topics are not known", ""
