@@ -170,7 +170,9 @@ def ros2_writer(order: str = "<") -> PacketWriter:
         "ros2:rmw_take", "QQqB", rmw_subscription_handle=address, message=address, source_timestamp="int64_t", taken="uint8_t"
     )
     writer.define("ros2:rcl_init", "QS", context_handle=address, version=text)
-    writer.define("ros2:rcl_service_init", "QQQS", service_handle=address, node_handle=address, rmw_handle=address, service_name=text)
+    writer.define(
+        "ros2:rcl_service_init", "QQQS", service_handle=address, node_handle=address, rmw_handle=address, service_name=text
+    )
     writer.define("ros2:rclcpp_service_callback_added", "QQ", service_handle=address, callback=address)
     writer.define("ros2:rcl_publish", "QQ", publisher_handle=address, message=address)
     thread = "letter_t _{0}comm[16]; int32_t _{0}tid; int32_t _{0}prio;"

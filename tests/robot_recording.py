@@ -1,6 +1,6 @@
 """The recording that the tutorial reads: a planner and a logger on one core for a second, of which the planner preempts the logger.
 
-    python tests/robot_recording.py samples/robot-recording
+python tests/robot_recording.py samples/robot-recording
 """
 
 import shutil
@@ -13,7 +13,7 @@ from ctf_traces import ros2_writer
 MS, US = 10**6, 10**3
 START = 5 * 10**9
 PLANNER, LOGGER = (100, 100, "control"), (200, 200, "log")
-#: What the kernel calls idle threads and those of SCHED_FIFO with the priorities 80 and 20: number, and the priority that LTTng records.
+#: An idle thread, and threads of SCHED_FIFO with the priorities 80 and 20: number, and the priority that LTTng records.
 THREADS = {"swapper/0": (0, 20), "control": (100, -81), "log": (200, -21)}
 #: Handles and addresses, the same in both processes.
 NODE, COMMAND, LOG, SUBSCRIPTION, ON_MESSAGE, TIMER, ON_TIMER = 0x10, 0x20, 0x30, 0x40, 0x50, 0x60, 0x70

@@ -42,7 +42,7 @@ def _share_unanswered(target: Target, simulation: Simulation | None) -> Fraction
 
 
 def not_measured(system: System, targets: Sequence[Target], begins: ModelBegins) -> Iterator[ComparisonRow]:
-    """A row for each process and chain, and each callback of a host, of which the trace has nothing, or nothing of the same definition."""
+    """A row for each process, chain, and callback of a host of which the trace has nothing, or nothing of the same definition."""
     measured = {(target.kind, target.name) for target in targets}
     of_host = [callback.name for callback in system.host.callbacks]
     kinds = {MeasuredKind.PROCESS: system.processes, MeasuredKind.CHAIN: system.chains, MeasuredKind.RUNNABLE: of_host}

@@ -100,7 +100,9 @@ def test_without_the_scheduler_times_are_gaps(tmp_path):
     assert line(text, "thread").startswith("thread: TODO")
 
 
-@pytest.mark.parametrize(("priority", "written"), [(-81, "priority: 80"), (-101, "thread: TODO"), (0, "thread: {policy: other}")])
+@pytest.mark.parametrize(
+    ("priority", "written"), [(-81, "priority: 80"), (-101, "thread: TODO"), (0, "thread: {policy: other}")]
+)
 def test_priorities_of_the_kernel(tmp_path, priority, written):
     """SCHED_FIFO and SCHED_RR of 80 are recorded as -81, deadlines as -101."""
     r = Recorder()
@@ -143,6 +145,26 @@ def test_what_a_description_cannot_have_is_reported(tmp_path):
     ]
     assert line(result.text, "publishes").startswith("publishes: TODO")
     assert '# Results leave out "node service /reset", which it calls, too: 1 call, 400 ns to 400 ns.' in result.text
+
+
+def test_a_topic_that_is_published_elsewhere_too_is_a_gap(tmp_path):
+    """A timer publishes with the stamp 1; the message with the stamp 2 comes from elsewhere, and one within the process has none."""
+    r = Recorder()
+    r.add(1, "rcl_publisher_init", A, 8, 9, 1, "/t", 10)
+    r.add(1, "rcl_subscription_init", A, 2, 3, 1, "/t", 10)
+    r.add(1, "rclcpp_subscription_init", A, 2, 4)
+    r.add(1, "rclcpp_subscription_callback_added", A, 4, 5)
+    r.add(10, "callback_start", A, 100, 0)
+    r.add(11, "rmw_publish", A, 9, 0, 1)
+    r.add(12, "callback_end", A, 100)
+    for time, stamp in ((20, 1), (30, 2)):
+        r.add(time, "rmw_take", A, 3, 0, stamp, 1)
+        r.call(time + 1, time + 2, 5)
+    r.add(40, "callback_start", A, 5, 1)
+    result = r.imported(tmp_path)
+    assert line(result.text, "rate") == "rate: TODO # also published outside the recording: give that a topic of its own"
+    within = "'node subscription /t' takes messages within its process, for which executors call it after all other kinds"
+    assert messages(result) == [within]
 
 
 def test_a_callback_that_was_not_called_is_a_gap(tmp_path):

@@ -15,8 +15,8 @@ from amalthea_uros.units import NANOSECOND, frequency_text, time_text
 #: The field of LTTng is -1 - p for a real-time priority p of a thread (lttng-modules, events/sched.h; the kernel has 99 - p).
 _REAL_TIME = range(-100, -1)
 _HEAD = (
-    "# Imported from a recording of ros2_tracing. Each TODO is a value that it cannot tell: replace all of them, then run amuros check.",
-    "# Execution times and rates are those of the recording, and no bounds: results are bounds only as far as these are never exceeded.",
+    "# Imported from a recording of ros2_tracing. Each TODO is a value that it cannot tell: replace all, then run amuros check.",
+    "# Execution times and rates are those of the recording, and no bounds: results are bounds as far as these are never exceeded.",
     "# An execution time is what a call took its thread since the end of the call before, with polling and taking the message.",
     "# Callback groups, and variables that callbacks share (reads, writes), are not recorded.",
 )
@@ -44,7 +44,8 @@ def _host(host: RecordedHost) -> Iterator[str]:
     tracer = f"recorded with ros2_tracing {host.tracer}" if host.tracer else ""
     yield f"ros: {GAP}{remark('; '.join(filter(None, ('the distribution', tracer))))}"
     yield "computers:"
-    yield from item_lines(iter((f"name: {quoted(host.computer or 'pc')}", f"cores: {GAP}{remark(_cores(_threads(host)))}")), "  ")
+    cores = remark(_cores([thread for executor in host.executors for thread in executor.threads]))
+    yield from item_lines(iter((f"name: {quoted(host.computer or 'pc')}", f"cores: {GAP}{cores}")), "  ")
     yield f"latency: {GAP} # from a publication to the queue of a subscription: {{min: ..., max: ...}}"
     yield "executors:"
     for executor in host.executors:
@@ -56,10 +57,6 @@ def _host(host: RecordedHost) -> Iterator[str]:
     if topics:
         yield "topics:"
         yield from topics
-
-
-def _threads(host: RecordedHost) -> list[RecordedThread]:
-    return [thread for executor in host.executors for thread in executor.threads]
 
 
 def _cores(threads: Sequence[RecordedThread]) -> str:
@@ -147,11 +144,13 @@ def _topics(host: RecordedHost) -> Iterator[str]:
     """The topics that other things than described callbacks publish."""
     for topic, subscriptions in host.subscriptions().items():
         if host.publishers(topic):
-            if topic in host.outside:
-                yield from item_lines(
-                    iter((f"topic: {quoted(topic)}", f"rate: {GAP} # also published outside callbacks: give it a topic of its own")),
-                    "  ",
-                )
+            others = [
+                *(["outside callbacks"] if topic in host.outside else []),
+                *(["outside the recording"] if any(each.foreign for each in subscriptions) else []),
+            ]
+            if others:
+                also = f"also published {' and '.join(others)}: give that a topic of its own"
+                yield from item_lines(iter((f"topic: {quoted(topic)}", f"rate: {GAP} # {also}")), "  ")
             continue
         yield from item_lines(_topic(topic, arrivals_of(subscriptions)), "  ")
 

@@ -66,8 +66,8 @@ class LinuxThread:
 
     Attributes
     ----------
-    priorities : less the 100 real-time priorities of the kernel, as LTTng records them (lttng-modules, events/sched.h): from 0 on, those of
-        threads without one; -1 to -100, those of real-time priorities 0 to 99; less, of deadlines
+    priorities : those of the kernel less 100, as LTTng records them (lttng-modules, events/sched.h): from 0 on, without a real-time
+        priority; -1 to -100, with the real-time priorities 0 to 99; -101, with a deadline
     cores : on which it was switched in
     ran : how long it has run, up to `since`
     since : when it was switched in; None if it does not run, or if that is not known

@@ -101,6 +101,7 @@ class Ros2(Interpreter):
         callback, thread, number = self.objects.callback(event), self._thread(event), _thread_number(event)
         taken = self._taken.pop(number, None)
         if event.fields.get("is_intra_process"):
+            callback.is_within_process = True
             self._inform("messages within a process have no publication in the trace, so their latencies are not known")
         elif taken is not None and callback.subscription is taken[0]:
             subscription, count = taken
@@ -186,6 +187,7 @@ class Ros2(Interpreter):
         number = subscription.published.get(stamp, -1) if subscription is not None else -1
         if subscription is not None and isinstance(stamp, int) and 0 < stamp < 1 << 63:
             subscription.stamps.append(stamp)
+            subscription.foreign += subscription.count > 0 and stamp not in subscription.published
         if subscription is not None and number >= 0:
             self._taken[thread] = subscription, number
         else:

@@ -40,6 +40,7 @@ class RosSubscription:
     chain : index of the entity, -1 until a message is published
     published : source stamp -> number of the publication; those that are not known to have arrived
     stamps : the source stamps of the messages that were taken
+    foreign : number of messages that nothing in the recording has published, if publications are recorded with their stamps
     """
 
     topic: str
@@ -49,6 +50,7 @@ class RosSubscription:
     count: int = 0
     published: dict[int, int] = field(default_factory=dict)
     stamps: array[int] = field(default_factory=lambda: array("q"))
+    foreign: int = 0
 
 
 @dataclass(slots=True, eq=False)
@@ -63,6 +65,7 @@ class RosCallback:
     name : in the events of the trace, "" until it is called
     threads : the threads that called it
     published : topic -> the most messages that it published in one call
+    is_within_process : whether it was called with a message within the process
     busy : what each call took its thread, in picoseconds; without those of which that is not known
     """
 
@@ -75,6 +78,7 @@ class RosCallback:
     name: str = ""
     threads: Counter[int] = field(default_factory=Counter)
     published: Counter[str] = field(default_factory=Counter)
+    is_within_process: bool = False
     busy: array[int] = field(default_factory=lambda: array("q"))
 
     @property
@@ -186,9 +190,7 @@ class RosObjects:
 
     def _timer_callback(self, event: CtfEvent) -> None:
         timer = address_of(event, "timer_handle")
-        callback = RosCallback(
-            address_of(event, "callback"), RosCallbackKind.TIMER, node="", of=self._periods.get(timer, 0)
-        )
+        callback = RosCallback(address_of(event, "callback"), RosCallbackKind.TIMER, node="", of=self._periods.get(timer, 0))
         self._create(callback)
         self._of_timer[timer] = callback
 
