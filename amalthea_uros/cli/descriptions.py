@@ -71,8 +71,8 @@ def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: b
     """Write an app.yaml from C or C++ sources that use rclc, or from a recording of ROS 2.
 
     SRC are files, or folders that are searched for them; this needs: pip install 'amuros[code]'. Or SRC is the folder of a recording of
-    ros2_tracing (CTF), of which the host is described. What SRC cannot tell becomes TODO in the file: no other command accepts the file
-    until these gaps are filled.
+    ros2_tracing (CTF), of which the host is described. Values that SRC does not have become TODO in the file: no other command accepts
+    the file until these gaps are filled.
     """
     from amalthea_uros.services.import_code import import_code
     from amalthea_uros.services.import_recording import import_recording, is_recording

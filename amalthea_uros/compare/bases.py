@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from amalthea_uros.compare.host import receptions
+from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.compare.naming import Target
 from amalthea_uros.compare.phases import systems_in_phases
 from amalthea_uros.measure.series import MeasuredKind

@@ -6,13 +6,11 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.compare.agreement import LEAST, Rule, compared
 from amalthea_uros.compare.bases import bases
 from amalthea_uros.compare.distributions import distributions
 from amalthea_uros.compare.findings import assumptions_of, findings_of, open_phases
-from amalthea_uros.compare.host import HostPredictor
 from amalthea_uros.compare.limits import judge_limits
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.naming import Names, Target, targets
@@ -80,8 +78,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
         runs = simulate_measured(system, settings, options.duration or measurement.duration or SECOND, options.seed)
     simulation = runs[0].simulation if runs else None
     in_phases = () if analysis is None or runs else analyses_in_phases(analysis, system, settings)
-    host = HostPredictor(system.host, Results() if analysis is None else analysis.host)
-    predictor = Predictor(analysis=analysis, host=host, runs=runs, in_phases=in_phases, overheads=options.overheads)
+    predictor = Predictor(analysis=analysis, host=system.host, runs=runs, in_phases=in_phases, overheads=options.overheads)
     uncertainty = measurement.resolution if options.uncertainty is None else options.uncertainty
     rule = Rule(
         tolerance=options.tolerance,

@@ -1,4 +1,4 @@
-"""What the analysis of a host predicts of what recordings of ROS 2 show: callbacks, and messages up to the callbacks that take them.
+"""Bounds of a host for the times that recordings of ROS 2 show: of callbacks, and of messages up to the callbacks that take them.
 
 A recording does not show when a message is in its queue or a timer is due, so that response times are not measured. But the gross
 execution time of a callback is a part of its response time, and from a publication to the begin of the callback it takes at most the
@@ -7,13 +7,13 @@ latency of the topic and that response time. A timer is called within its respon
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.compare.agreement import Prediction
+from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.compare.results import PredictionClaim, Statistic
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.measure.series import MeasuredKind
@@ -29,20 +29,13 @@ _LATENCY = "latency of the topic, and analysis of the response time"
 _WITHIN = "period, and analysis of the response time"
 
 
-def receptions(host: Host) -> Mapping[str, HostCallback]:
-    """The subscriptions by the names that the chains of their messages have in recordings."""
-    named = [(f"/{each.topic} -> {each.group.rpartition('/')[0]}", each) for each in host.callbacks if each.topic]
-    counts = Counter(name for name, _ in named)
-    return {name: callback for name, callback in named if counts[name] == 1}
-
-
 @dataclass(frozen=True, slots=True)
 class HostPredictor:
     """Looks up what is predicted of a host.
 
     Attributes
     ----------
-    results : of the executors, by the analysis; empty if it is not asked
+    results : of the executors, by the analysis
     """
 
     host: Host
@@ -87,8 +80,8 @@ class HostPredictor:
         return next((each for each in self.host.callbacks if each.name == name), None)
 
     def _handle(self, callback: HostCallback) -> HandleResult | None:
-        found = (each.handles[callback.name] for each in self.results if callback.name in each.handles.names)
-        return next(found, None)
+        handles = (each.handles[callback.name] for each in self.results if callback.name in each.handles.names)
+        return next(handles, None)
 
 
 def _distances(period: Time, worst: Time, can_lose: bool) -> Iterator[tuple[Statistic, Prediction]]:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from amalthea_uros._internal.similar import did_you_mean
-from amalthea_uros.compare.host import receptions
+from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import with_baseline

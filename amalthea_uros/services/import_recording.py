@@ -1,4 +1,4 @@
-"""A recording of ROS 2 -> a description of the host, with gaps for what the recording cannot tell."""
+"""A recording of ROS 2 -> a description of the host, with gaps for values that are not recorded."""
 
 from __future__ import annotations
 

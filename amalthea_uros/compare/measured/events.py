@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amalthea_uros.compare.host import receptions
+from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.steps import iterations_name

@@ -1,1 +1,1 @@
-"""What a recording of ROS 2 says of the host, and the description of it."""
+"""The host in a recording of ROS 2, and the description of it."""

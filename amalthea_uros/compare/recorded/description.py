@@ -1,4 +1,4 @@
-"""A recorded host -> the text of an app.yaml; what a recording cannot tell is `TODO`."""
+"""A recorded host -> the text of an app.yaml; a value that is not recorded is `TODO`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from amalthea_uros.units import NANOSECOND, frequency_text, time_text
 #: The field of LTTng is -1 - p for a real-time priority p of a thread (lttng-modules, events/sched.h; the kernel has 99 - p).
 _REAL_TIME = range(-100, -1)
 _HEAD = (
-    "# Imported from a recording of ros2_tracing. Each TODO is a value that it cannot tell: replace all, then run amuros check.",
+    "# Imported from a recording of ros2_tracing. Each TODO is a value that is not recorded: replace all, then run amuros check.",
     "# Execution times and rates are those of the recording, and no bounds: results are bounds as far as these are never exceeded.",
     "# An execution time is what a call took its thread since the end of the call before, with polling and taking the message.",
     "# Callback groups, and variables that callbacks share (reads, writes), are not recorded.",
@@ -97,10 +97,10 @@ def _node(node: str, callbacks: Sequence[RecordedCallback], executor: RecordedEx
     yield f"name: {quoted(node)}"
     yield f"executor: {quoted(executor.name)}" if executor is not None else f"executor: {GAP} # no callback was called"
     for key, kind in (("subscriptions", RosCallbackKind.SUBSCRIPTION), ("timers", RosCallbackKind.TIMER)):
-        found = [each for each in callbacks if each.callback.kind is kind]
-        if found:
+        of_kind = [each for each in callbacks if each.callback.kind is kind]
+        if of_kind:
             yield f"{key}:"
-        for each in found:
+        for each in of_kind:
             yield from item_lines(_callback(each), "  ")
 
 

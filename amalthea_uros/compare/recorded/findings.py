@@ -1,4 +1,4 @@
-"""What a recording shows and a description cannot have."""
+"""Findings about recorded behaviour that a description cannot have."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class RecordedExecutor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordedHost:
-    """What a recording says.
+    """The content of a recording.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ class RecordedHost:
     findings: tuple[Finding, ...]
 
     def executor_of(self, node: str) -> RecordedExecutor | None:
-        """The executor of a node, None if none of its callbacks was called."""
+        """The executor of a node, None if no callback of it was called."""
         return next((each for each in self.executors if node in each.nodes), None)
 
     def publishers(self, topic: str) -> list[RecordedCallback]:
@@ -104,15 +104,15 @@ class RecordedHost:
 
     def subscriptions(self) -> Mapping[str, list[RosSubscription]]:
         """The subscriptions of callbacks, by topic."""
-        found: dict[str, list[RosSubscription]] = {}
+        by_topic: dict[str, list[RosSubscription]] = {}
         for each in (each for of in self.callbacks.values() for each in of):
             if each.callback.subscription is not None:
-                found.setdefault(each.callback.subscription.topic, []).append(each.callback.subscription)
-        return found
+                by_topic.setdefault(each.callback.subscription.topic, []).append(each.callback.subscription)
+        return by_topic
 
 
 def read_recording(path: Path) -> RecordedHost:
-    """What the recording in a folder says of the host.
+    """Read the recording in a folder.
 
     Raises
     ------
@@ -171,17 +171,17 @@ def _executors(callbacks: Iterable[RecordedCallback], threads: Mapping[int, Reco
     def following(each: RosCallback | int | str) -> Iterable[RosCallback | int | str]:
         return _in_common(each) if isinstance(each, RosCallback) else sharing[each]
 
-    found: list[RecordedExecutor] = []
+    executors: list[RecordedExecutor] = []
     seen: set[RosCallback] = set()
     for first in called:
         if first in seen:
             continue
         start: RosCallback | int | str = first
-        together = reached([start], following)
-        group = [called[each] for each in together if isinstance(each, RosCallback)]
+        connected = reached([start], following)
+        group = [called[each] for each in connected if isinstance(each, RosCallback)]
         seen.update(each.callback for each in group)
-        own = [threads[each] for each in together if isinstance(each, int)]
-        found.append(
+        own = [threads[each] for each in connected if isinstance(each, int)]
+        executors.append(
             RecordedExecutor(
                 name=own[0].name,
                 threads=tuple(own),
@@ -189,7 +189,7 @@ def _executors(callbacks: Iterable[RecordedCallback], threads: Mapping[int, Reco
                 others=tuple(each for each in group if not each.is_described),
             )
         )
-    return found
+    return executors
 
 
 def _in_common(callback: RosCallback) -> list[int | str]:

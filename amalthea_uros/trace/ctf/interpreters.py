@@ -124,10 +124,10 @@ class LinuxScheduler(Interpreter):
         if isinstance(before, int) and before in self.threads:
             self.threads[before].leave(event.time)
         if isinstance(after, int) and after:
-            found = self.threads.setdefault(after, LinuxThread())
-            found.since, priority = event.time, event.fields.get("next_prio")
-            found.priorities |= {priority} if isinstance(priority, int) else set()
-            found.cores |= {event.core} if event.core is not None else set()
+            thread = self.threads.setdefault(after, LinuxThread())
+            thread.since, priority = event.time, event.fields.get("next_prio")
+            thread.priorities |= {priority} if isinstance(priority, int) else set()
+            thread.cores |= {event.core} if event.core is not None else set()
 
     def _waking(self, event: CtfEvent) -> None:
         thread = self._thread(event.fields, "")

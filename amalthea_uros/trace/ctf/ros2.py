@@ -76,13 +76,13 @@ class Ros2(Interpreter):
     def callbacks(self) -> tuple[RosCallback, ...]:
         """All callbacks, each with a name of its own; what still executes is counted, too."""
         self.lose()
-        found = tuple(self.objects.known())
-        for callback in found:
+        callbacks = tuple(self.objects.known())
+        for callback in callbacks:
             self._name(callback)
-        return found
+        return callbacks
 
     def lose(self) -> None:
-        """What executes, and which message it has taken, is not known any more."""
+        """Forget which callbacks execute, and which messages they have taken."""
         for calls in self._calls.values():
             for call in calls:
                 call.end()

@@ -22,7 +22,7 @@ RosAddress: TypeAlias = tuple[int, int]
 
 
 class RosCallbackKind(StrEnum):
-    """What calls a callback."""
+    """The kind of object that a callback belongs to."""
 
     TIMER = "timer"
     SUBSCRIPTION = "subscription"
@@ -55,7 +55,7 @@ class RosSubscription:
 
 @dataclass(slots=True, eq=False)
 class RosCallback:
-    """A callback, and what it was seen to do.
+    """A callback, and its recorded behaviour.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class RosCallback:
 
     @property
     def label(self) -> str:
-        """What it is called; several can have the same label."""
+        """Its name for people; several can have the same label."""
         match self.kind:
             case RosCallbackKind.UNKNOWN:
                 return self.symbol
@@ -158,31 +158,31 @@ class RosObjects:
 
     def _subscription_init(self, event: CtfEvent) -> None:
         depth = event.fields.get("queue_depth", 0)
-        found = RosSubscription(
+        subscription = RosSubscription(
             str(event.fields.get("topic_name", "")), self._node(event), depth if isinstance(depth, int) else 0
         )
-        self.subscriptions[address_of(event, "subscription_handle")] = found
-        self.by_middleware[address_of(event, "rmw_subscription_handle")] = found
+        self.subscriptions[address_of(event, "subscription_handle")] = subscription
+        self.by_middleware[address_of(event, "rmw_subscription_handle")] = subscription
 
     def _subscription_object(self, event: CtfEvent) -> None:
-        found = self.subscriptions.get(address_of(event, "subscription_handle"))
-        if found is not None:
-            self._by_object[address_of(event, "subscription")] = found
+        subscription = self.subscriptions.get(address_of(event, "subscription_handle"))
+        if subscription is not None:
+            self._by_object[address_of(event, "subscription")] = subscription
 
     def _subscription_callback(self, event: CtfEvent) -> None:
-        found = self._by_object.get(address_of(event, "subscription"))
-        if found is not None:
+        subscription = self._by_object.get(address_of(event, "subscription"))
+        if subscription is not None:
             kind = RosCallbackKind.SUBSCRIPTION
-            self._create(RosCallback(address_of(event, "callback"), kind, found.node, subscription=found))
+            self._create(RosCallback(address_of(event, "callback"), kind, subscription.node, subscription=subscription))
 
     def _service_init(self, event: CtfEvent) -> None:
         handle = address_of(event, "service_handle")
         self._services[handle] = self._node(event), str(event.fields.get("service_name", ""))
 
     def _service_callback(self, event: CtfEvent) -> None:
-        found = self._services.get(address_of(event, "service_handle"))
-        if found is not None:
-            self._create(RosCallback(address_of(event, "callback"), RosCallbackKind.SERVICE, *found))
+        service = self._services.get(address_of(event, "service_handle"))
+        if service is not None:
+            self._create(RosCallback(address_of(event, "callback"), RosCallbackKind.SERVICE, *service))
 
     def _timer_init(self, event: CtfEvent) -> None:
         period = event.fields.get("period", 0)
