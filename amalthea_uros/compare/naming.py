@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from amalthea_uros._internal.similar import did_you_mean
-from amalthea_uros.compare.measured.receptions import receptions
+from amalthea_uros.compare.measured.receptions import ARROW, receptions
 from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import with_baseline
@@ -205,8 +205,10 @@ def _check(measurement: Measurement, names: Names, system: System) -> None:
 def _kinds(name: str, system: System) -> list[MeasuredKind]:
     """What the model has of a name."""
     found = {MeasuredKind.PROCESS: system.processes, MeasuredKind.CHAIN: system.chains, MeasuredKind.RUNNABLE: system.runnables}
-    of_host = {MeasuredKind.CHAIN: receptions(system.host), MeasuredKind.RUNNABLE: system.host.callback_names}
-    return [kind for kind, items in found.items() if name in items or name in of_host.get(kind, ())]
+    of_host = {MeasuredKind.RUNNABLE} if name in system.host.callback_names else set()
+    if ARROW in name and name in receptions(system.host):
+        of_host.add(MeasuredKind.CHAIN)
+    return [kind for kind, items in found.items() if name in items or kind in of_host]
 
 
 def _all_names(system: System) -> dict[str, None]:
