@@ -113,8 +113,8 @@ def schedule(recording: Recording, planner: list[tuple[int, int]], logger: list[
         recording.switch(end, name, after, 0 if (name, after) == ("log", "control") else 1)
 
 
-def main(folder: Path) -> None:
-    recording, random = Recording(), Random(1)
+def main(folder: Path, seed: int = 1) -> None:
+    recording, random = Recording(), Random(seed)
     create(recording)
     planner, published = plan(recording, random)
     schedule(recording, planner, log(recording, random, planner, published))

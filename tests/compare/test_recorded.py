@@ -209,6 +209,18 @@ def test_a_recording_is_within_the_bounds_of_its_own_description(robot):
     assert latency.predicted == worst + MILLISECOND // 2
 
 
+@pytest.mark.parametrize("seed", [2, 3, 4])
+def test_every_recording_is_within_the_bounds_of_its_own_description(tmp_path, seed):
+    """Messages are published 0 to 3 ms after a grid and arrive at once: 10 ms are more than the jitter of any rate that fits them."""
+    robot_recording.main(tmp_path / "trace", seed)
+    text = filled(import_recording(tmp_path / "trace").text).replace("jitter: 3 ms", "jitter: 10 ms")
+    (tmp_path / "robot.yaml").write_text(text)
+    rows = amuros.compare(tmp_path / "robot.yaml", tmp_path / "trace", by=["analysis"]).rows
+    compared = [row for row in rows if row.statistic is not None]
+    assert len(compared) > 10
+    assert {row.verdict for row in compared} == {Agreement.WITHIN}
+
+
 def test_what_is_beyond_the_bounds_refutes_the_description(robot):
     robot.write_text(robot.read_text().replace("{min: 1.019 ms, max: 2.912 ms}", "1 ms"))
     found = amuros.compare(robot, RECORDING, by=["analysis"])
