@@ -68,14 +68,21 @@ def init(target: Path, board: str | None, example: str | None, lists: bool, forc
 @click.option("--board", type=Offer(_BOARDS), help="Controller; default: none, its clock is to be filled in.")
 @_force_option
 def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: bool) -> None:
-    """Write an app.yaml from C or C++ sources that use rclc.
+    """Write an app.yaml from C or C++ sources that use rclc, or from a recording of ROS 2.
 
-    SRC are files, or folders that are searched for them. What the code cannot tell, such as execution times, becomes TODO in the
-    file: no other command accepts the file until these gaps are filled. Needs: pip install 'amuros[code]'.
+    SRC are files, or folders that are searched for them; this needs: pip install 'amuros[code]'. Or SRC is the folder of a recording of
+    ros2_tracing (CTF), of which the host is described. Values that SRC does not have become TODO in the file: no other command accepts
+    the file until these gaps are filled.
     """
     from amalthea_uros.services.import_code import import_code
+    from amalthea_uros.services.import_recording import import_recording, is_recording
 
-    result = import_code(sources, target, board=board, force=force)
+    if len(sources) == 1 and is_recording(sources[0]):
+        if board is not None:
+            raise click.UsageError("--board is for source code; a recording of ROS 2 is that of the host")
+        result = import_recording(sources[0], target, force=force)
+    else:
+        result = import_code(sources, target, board=board, force=force)
     show_findings(result.findings)
     if not is_stream(target):
         show_text(result)

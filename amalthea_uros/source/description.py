@@ -73,7 +73,11 @@ def quoted(text: str) -> str:
 def _at(place: Location | None, note: str = "") -> str:
     """A comment with the place of a value."""
     where = f"{Path(place.path).name}:{place.line}" if place is not None else ""
-    text = "; ".join(filter(None, (where, note)))
+    return remark("; ".join(filter(None, (where, note))))
+
+
+def remark(text: str) -> str:
+    """A comment at the end of a line, "" if there is nothing to say."""
     return f" # {''.join(each if each.isprintable() else '?' for each in text)}" if text else ""
 
 
@@ -107,9 +111,9 @@ def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) 
     elif executors or facts.senders:
         yield "executors:"
         for executor in executors:
-            yield from _item(_executor(executor, facts, names), "  ")
+            yield from item_lines(_executor(executor, facts, names), "  ")
         for sender, name in zip(facts.senders, names.senders, strict=True):
-            yield from _item(_sender(sender, name, names), "  ")
+            yield from item_lines(_sender(sender, name, names), "  ")
     else:
         yield f"executor: {GAP} # none is initialised in these files"
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
@@ -249,10 +253,11 @@ def _application(facts: CodeFacts, names: CodeNames) -> Iterator[str]:
         return
     yield "nodes:"
     for node in nodes:
-        yield from _item(_node(node, node is nodes[0], facts, names), "  ")
+        yield from item_lines(_node(node, node is nodes[0], facts, names), "  ")
 
 
-def _item(lines: Iterator[str], indent: str) -> Iterator[str]:
+def item_lines(lines: Iterator[str], indent: str) -> Iterator[str]:
+    """An item of a list in YAML, of the lines of its content."""
     for index, line in enumerate(lines):
         yield f"{indent}{'  ' if index else '- '}{line}"
 
@@ -265,14 +270,14 @@ def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) 
     if publishers:
         yield "publishers:"
         for publisher in publishers:
-            yield from _item(_publisher(publisher, facts), "  ")
+            yield from item_lines(_publisher(publisher, facts), "  ")
     handles = names.handle_by_entity
     for kind, key in _LISTS.items():
         entities = [each for each in own if each.kind is kind and each.key in handles]
         if entities:
             yield f"{key}:"
         for entity in entities:
-            yield from _item(_callback(entity, *handles[entity.key], facts, names), "  ")
+            yield from item_lines(_callback(entity, *handles[entity.key], facts, names), "  ")
     yield from _servers(node, own, facts, names)
 
 
