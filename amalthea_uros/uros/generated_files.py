@@ -6,9 +6,11 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from amalthea_uros._internal.ports import parameter_services
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.spec.application import Application, NodeSection
-from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import values_of, with_generated_options
 from amalthea_uros.uros.memory import MemoryDemand
@@ -79,14 +81,14 @@ def _handles(assembly: Assembly) -> dict[str, int]:
     loops = {executor.name: len(executor.handles) for executor in assembly.system.executors}
     if loops:
         return loops
-    nodes = assembly.description.application.nodes
-    return {assembly.description.middleware.stated_executors[0].name: sum(map(_node_handles, nodes))}
+    nodes, middleware = assembly.description.application.nodes, assembly.description.middleware
+    return {middleware.stated_executors[0].name: sum(_node_handles(node, middleware) for node in nodes)}
 
 
-def _node_handles(node: NodeSection) -> int:
+def _node_handles(node: NodeSection, middleware: Middleware) -> int:
     messages = len(node.subscriptions) + len(node.services) + len(node.clients)
     others = len(node.timers) + len(node.guard_conditions) + len(node.action_servers) + len(node.action_clients)
-    parameters = PARAMETER_SERVICES if node.parameter_server is not None else 0
+    parameters = parameter_services(middleware.ros) if node.parameter_server is not None else 0
     lifecycle = min(node.lifecycle.services, LIFECYCLE_SERVICES) if node.lifecycle is not None else 0
     return messages + others + parameters + lifecycle
 
