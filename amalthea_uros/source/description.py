@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.source.boards import platform_of_board
 from amalthea_uros.source.facts import (
     CodeEntity,
     CodeEntityKind,
@@ -22,7 +23,6 @@ from amalthea_uros.source.facts import (
 )
 from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.names import CodeNames
-from amalthea_uros.source.platform import CUSTOM
 from amalthea_uros.units import SECOND, Time, time_text
 
 GAP = "TODO"
@@ -54,7 +54,7 @@ def description_text(facts: CodeFacts, name: str, board: str | None, options: Ma
         "# Imported from source code. Each TODO is a value that the code cannot tell: replace all of them, then run amuros check.",
         "amuros: 1",
         f"name: {quoted(name)}",
-        *_hardware(board),
+        *_hardware(facts, board),
         *_os(facts),
         "middleware:",
         *(f"  {line}" for line in _middleware(facts, names, options)),
@@ -81,13 +81,17 @@ def _time(time: Time | None) -> str:
     return time_text(time) if time is not None else GAP
 
 
-def _hardware(board: str | None) -> Iterator[str]:
-    if board is not None:
-        yield f"hardware: {{platform: {quoted(board)}}}"
-        return
+def _hardware(facts: CodeFacts, board: str | None) -> Iterator[str]:
+    """The platform, and the clock that the build states, which replaces that of the platform."""
+    stated = platform_of_board(facts.board.value) if facts.board is not None else None
+    platform, place = (board, None) if board is not None or facts.board is None else (stated, facts.board.place)
+    note = "" if platform or place is None else "no platform of this board is known"
     yield "hardware:"
-    yield "  platform: generic"
-    yield f"  frequency: {GAP} # clock of the cores"
+    yield f"  platform: {quoted(platform or 'generic')}{_at(place, note)}"
+    if facts.clock is not None:
+        yield f"  frequency: {facts.clock.value} Hz{_at(facts.clock.place)}"
+    elif platform is None:
+        yield f"  frequency: {GAP} # clock of the cores"
 
 
 def _os(facts: CodeFacts) -> Iterator[str]:
@@ -100,6 +104,10 @@ def _os(facts: CodeFacts) -> Iterator[str]:
 
 
 def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) -> Iterator[str]:
+    if facts.ros is not None:
+        yield f"ros: {facts.ros.value}{_at(facts.ros.place)}"
+    if facts.port:
+        yield f"port: {facts.port}"
     executors = list(facts.executors.values())
     if len(executors) == 1 and not facts.senders:
         yield "executor:"
@@ -116,17 +124,10 @@ def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) 
     if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
         yield f"multithread: true{_at(option.place)}"
     yield from _transport(facts)
-    limits = [*_built_transport(facts), *_limits(facts, options)]
+    limits = list(_limits(facts, options))
     if limits:
         yield "limits:"
         yield from (f"  {line}" for line in limits)
-
-
-def _built_transport(facts: CodeFacts) -> Iterator[str]:
-    """The transport of the build, where the description would take that of the wire for it."""
-    is_udp = facts.transport is not None and facts.transport.key == "udp"
-    if is_udp and facts.port in CUSTOM and "RMW_UXRCE_TRANSPORT" not in facts.options:
-        yield f"RMW_UXRCE_TRANSPORT: custom # {facts.port} sends by functions of its own"
 
 
 def _limits(facts: CodeFacts, options: Mapping[str, str]) -> Iterator[str]:

@@ -236,7 +236,7 @@ class Middleware(DescriptionSection):
     profile: Name = "xrce-dds"
     """The middleware: `xrce-dds`, `zenoh-pico`, or a file that describes another one."""
     ros: Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "rolling"] | None = None
-    """Distribution of ROS 2 whose micro-ROS the controller has: a parameter server has five services up to humble, and six from iron on;
+    """Distribution of ROS 2 of its micro-ROS: a parameter server has five services up to humble, and six since;
     default: unknown, so that six are counted."""
     port: (
         Annotated[

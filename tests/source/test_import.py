@@ -97,7 +97,7 @@ def test_a_period_is_what_constants_say(period, expected, tmp_path):
     ("sleep", "expected"),
     [
         ("usleep(2500);", "sleep: 2500 us"),
-        ("delay(5); delay(5);", "sleep: 10 ms"),
+        ("usleep(5000); usleep(5000);", "sleep: 10 ms"),
         ("k_sleep(K_MSEC(4));", "sleep: 4 ms"),
         ("vTaskDelay(pdMS_TO_TICKS(30));", "sleep: 30 ms"),
         ("vTaskDelay(30 / portTICK_PERIOD_MS);", "sleep: 30 ms"),

@@ -24,7 +24,7 @@ EXPECTED = {
     "publisher-of-other-node.c": (["name: motor", "name: ticks", "publishes: [ticks]"], {"IMP018"}),
     "unallocated-string.ino": (["name: on_s", "name: on_j"], {"IMP007", "IMP021"}),
     "odometry-best-effort.ino": (["message_size: TODO # nav_msgs/msg/Odometry: 704 B"], {"IMP022"}),
-    "arduino-wifi.ino": (["tick: 1 ms", "RMW_UXRCE_TRANSPORT: custom", "sleep: 5 ms"], set()),
+    "arduino-wifi.ino": (["tick: 1 ms", "port: arduino", "udp: {bitrate: TODO}", "sleep: 5 ms"], set()),
 }
 pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="the programs are not at hand")
 

@@ -37,7 +37,10 @@ def created_entities(application: Application, middleware: Middleware) -> tuple[
     """All entities in the order of their creation: the session, then each node with its entities."""
     if not application.nodes:
         return ()
-    return (CreatedEntity(kind=SESSION, name="client"), *(entity for node in application.nodes for entity in _of_node(node, middleware)))
+    return (
+        CreatedEntity(kind=SESSION, name="client"),
+        *(entity for node in application.nodes for entity in _of_node(node, middleware)),
+    )
 
 
 def _of_node(node: NodeSection, middleware: Middleware) -> Iterator[CreatedEntity]:

@@ -48,7 +48,9 @@ def _check_handle_limit(executor: Executor, section: spec.ExecutorSection, middl
         left = ", ".join(handle.name for handle in executor.handles[limit:])
         message = f"{executor.name!r} needs {counted(count, 'handle')}, but has only {limit}: adding {left} returns an error"
         advice = f"Set 'max_handles' and rclc_executor_init to {count}"
-        servers = len({handle.name.rpartition("_")[0] for handle in executor.handles if handle.kind is HandleKind.PARAMETER_SERVICE})
+        servers = len(
+            {handle.name.rpartition("_")[0] for handle in executor.handles if handle.kind is HandleKind.PARAMETER_SERVICE}
+        )
         if middleware.ros is None and count - servers <= limit:
             # A parameter server had one handle less before iron.
             message = f"{message}, unless ROS 2 is humble or older"
