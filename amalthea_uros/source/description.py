@@ -193,7 +193,9 @@ def _thread(thread: Thread) -> Iterator[str]:
 
 def _is_of_other_loop(executor: CodeExecutor) -> bool:
     """Whether the description has its loop at another executor, the first one that spins in it."""
-    return bool(executor.spins) and executor.spins[0].executors[:1] not in ((), (executor.key,))
+    if not executor.spins or executor.spins[0].again is not None:
+        return False
+    return executor.spins[0].executors[:1] not in ((), (executor.key,))
 
 
 def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
@@ -201,6 +203,9 @@ def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
         yield f"loop: {GAP} # no call lets it spin"
         return
     spin = executor.spins[0]
+    if spin.again is not None:
+        yield f"loop: {GAP}{_at(spin.again.place, 'an executor spins more than once in an iteration, which a loop cannot have')}"
+        return
     if spin.kind is SpinKind.ENDLESS:
         is_default = executor.timeout_place is None
         time = Time(10**12) if is_default else executor.timeout
@@ -334,7 +339,12 @@ def _outputs(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, names: Co
     for callback in callbacks:
         if callback.function is not None:
             used |= facts.publishes.get(callback.function.scope, {})
+    unknown = [place for each, place in used.items() if each not in facts.entities]
+    if unknown:
+        yield f"publishes: {GAP}{_at(unknown[0], 'with an object that is not understood')}"
     for key, kind in (("publishes", CodeEntityKind.PUBLISHER), ("requests", CodeEntityKind.CLIENT)):
+        if unknown and kind is CodeEntityKind.PUBLISHER:
+            continue
         found = [(facts.entities[each], place) for each, place in used.items() if each in facts.entities]
         values = [(_target(each, names), place) for each, place in found if each.kind is kind]
         if values:

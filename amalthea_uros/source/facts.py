@@ -178,6 +178,17 @@ class Spin:
         """Keys of the executors that spin in the same loop, in order, each once."""
         return tuple(dict.fromkeys(item.of for item in self.items if item.kind is CodeLoopKind.SPIN))
 
+    @property
+    def again(self) -> CodeLoopItem | None:
+        """The first item in which an executor spins that did already in the same iteration."""
+        seen: set[str] = set()
+        for item in self.items:
+            if item.kind is CodeLoopKind.SPIN:
+                if item.of in seen:
+                    return item
+                seen.add(item.of)
+        return None
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeSender:

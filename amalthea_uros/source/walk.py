@@ -196,6 +196,11 @@ class CodeWalk:
         body = node.child_by_field_name("body")
         if body is None:
             return
+        condition = node.child_by_field_name("condition")
+        if node.type == "do_statement" and condition is not None and self._expression(condition, context).number == 0:
+            # The usual form of a macro, or of a block that `break` leaves.
+            self._visit(body, context)
+            return
         counted = self._iterations(node, context)
         if counted is not None:
             name, values = counted

@@ -21,6 +21,7 @@ VALUES = {
     "priority": "3",
     "trigger": "any",
     "order": "[]",
+    "publishes": "[]",
     "events": "false",
 }
 

@@ -105,8 +105,9 @@ def test_a_period_is_what_constants_say(period, expected, tmp_path):
         ("vTaskDelay(3);", "sleep: TODO"),
         ("if (idle) { usleep(100); }", "sleep: TODO"),
         ("usleep(how_long());", "sleep: TODO"),
-        # Another loop has nothing to do with this one.
-        ("while (wait) { usleep(100); }", "spin_some: 10 ms}"),
+        # How often another loop in this one sleeps is unknown.
+        ("while (wait) { usleep(100); }", "sleep: TODO"),
+        ("do { usleep(100); } while (0);", "sleep: 100 us"),
     ],
 )
 def test_the_sleep_of_a_loop(sleep, expected, tmp_path):

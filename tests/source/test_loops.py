@@ -47,6 +47,11 @@ def loop(tmp_path, body, includes="", **others):
             ["{spin_some: 10 ms, sleep: 3 ms}"],
         ),
         (f"{SPIN} if (idle) {{ usleep(500); }}", ["{spin_some: 10 ms, sleep: TODO}"]),
+        # A loop in it is a part of each iteration, however often; one that counts to a constant is known.
+        (f"{SPIN} while (busy) {{ rcl_publish(&p, &m, NULL); usleep(9); }}", ["spin_some: 10 ms", "publish: [out]", "sleep: TODO"]),
+        (f"{SPIN} for (int i = 0; i < 3; i++) {{ usleep(1000); }}", ["{spin_some: 10 ms, sleep: 3 ms}"]),
+        # The description has no loop in which an executor spins twice.
+        (f"{SPIN} usleep(1000); {SPIN}", ["TODO"]),
         # Arduino without an operating system waits busily.
         (f"{SPIN} delay(5);", ["spin_some: 10 ms", "busy_wait: 5 ms"]),
     ],
