@@ -180,11 +180,11 @@ class Spin:
 
     @property
     def again(self) -> CodeLoopItem | None:
-        """The first item in which an executor spins that did already in the same iteration."""
+        """The first item in which an executor spins that did already in the same iteration, or that is in a loop of its own."""
         seen: set[str] = set()
         for item in self.items:
             if item.kind is CodeLoopKind.SPIN:
-                if item.of in seen:
+                if item.of in seen or item.note:
                     return item
                 seen.add(item.of)
         return None

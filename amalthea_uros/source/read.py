@@ -10,7 +10,7 @@ from amalthea_uros.source.boards import platform_of_board, pools_of_board
 from amalthea_uros.source.build_files import BuildFacts, build_facts
 from amalthea_uros.source.entities import CREATIONS, entity_of
 from amalthea_uros.source.executors import ACTIONS, SPINS, executor_of
-from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thread
+from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws, not_understood
 from amalthea_uros.source.loops import SENDS, add_senders, add_spins
@@ -20,7 +20,7 @@ from amalthea_uros.source.platform import platform_of
 from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
 from amalthea_uros.source.sleeps import SLEEPS
-from amalthea_uros.source.walk import CodeWalk
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 
 _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
 #: How the entry of a program can be called; two of one name are two programs.
@@ -75,11 +75,25 @@ def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
     for call in walk.calls:
         if call.name in CREATIONS:
             entity = entity_of(call, walk)
+            if entity is not None:
+                facts.findings += _of_each_object(call, entity, walk.program)
             if entity is not None and entity.key not in facts.entities:
                 facts.entities[entity.key] = entity
     # All executors first: functions that are called later can come earlier in the files.
     _act(facts, walk, {"rclc_executor_init"})
     _act(facts, walk, ACTIONS.keys() - {"rclc_executor_init"})
+
+
+def _of_each_object(call: FunctionCall, entity: CodeEntity, program: CodeProgram) -> list[Finding]:
+    """An entity of each object of a class, where the code does not show which object it is."""
+    owner = call.function.owner if call.function is not None else ""
+    number = len(program.objects.get(owner, ()))
+    if not owner or number < 2 or not entity.key.startswith(f"{owner}::"):
+        return []
+    message = f"'{entity.variable}' is created for each of {number} objects of '{owner}', which the description has once"
+    return [
+        Finding("IMP003", Severity.WARNING, message, call.place, "Add those of the other objects to the description by hand.")
+    ]
 
 
 def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:

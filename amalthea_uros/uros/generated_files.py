@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from amalthea_uros._internal.ports import parameter_services
+from amalthea_uros._internal.ports import known_ports, parameter_services
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
@@ -17,7 +17,7 @@ from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option
 from amalthea_uros.uros.storage import MessageStorage, storage_of
 
-META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
+META, HEADER, CMAKE, KCONFIG = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake", "amuros.conf"
 #: In each file, by which it can be told from those that people wrote.
 MARK = "Written by amuros generate"
 #: Packages of options that the header of rmw_microxrcedds repeats.
@@ -50,8 +50,11 @@ def texts_of(assembly: Assembly) -> dict[str, str]:
     )
     values = values_of(assembly.options)
     packages: dict[str, list[tuple[Option, int]]] = {}
+    kconfig = _kconfig(assembly.profile.middleware.port, values)
+    elsewhere = {option.name for _, _, option in kconfig}
     for option, value in values:
-        packages.setdefault(option.package, []).append((option, value))
+        rows = packages.setdefault(option.package, [])
+        rows += [(option, value)] if option.name not in elsewhere else []
     application = assembly.description.application
     content = {
         "mark": MARK,
@@ -61,10 +64,18 @@ def texts_of(assembly: Assembly) -> dict[str, str]:
         "checks": list(_checks(values)),
         "handles": _constants("AMUROS_HANDLES", _handles(assembly)),
         "sizes": _constants("AMUROS_SIZE", _sizes(application)),
+        "kconfig": kconfig,
     }
     is_xrce = _WITH_HEADER in packages
-    names = (META, HEADER) if is_xrce else (CMAKE, HEADER)
+    names = (META, HEADER, *([KCONFIG] if kconfig else [])) if is_xrce else (CMAKE, HEADER)
     return {name: environment.get_template(f"{name}.j2").render(content) for name in names}
+
+
+def _kconfig(port: str | None, values: list[tuple[Option, int]]) -> list[tuple[str, str, Option]]:
+    """The options that the configuration of a port replaces, whatever `colcon.meta` says, by their names there."""
+    known = known_ports().get(port or "")
+    names = known.kconfig if known is not None else {}
+    return [(names[option.name], option.text(value), option) for option, value in values if option.name in names]
 
 
 def _checks(values: list[tuple[Option, int]]) -> Iterator[tuple[str, int, Option]]:

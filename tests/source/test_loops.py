@@ -48,7 +48,10 @@ def loop(tmp_path, body, includes="", **others):
         ),
         (f"{SPIN} if (idle) {{ usleep(500); }}", ["{spin_some: 10 ms, sleep: TODO}"]),
         # A loop in it is a part of each iteration, however often; one that counts to a constant is known.
-        (f"{SPIN} while (busy) {{ rcl_publish(&p, &m, NULL); usleep(9); }}", ["spin_some: 10 ms", "publish: [out]", "sleep: TODO"]),
+        (
+            f"{SPIN} while (busy) {{ rcl_publish(&p, &m, NULL); usleep(9); }}",
+            ["spin_some: 10 ms", "publish: [out]", "sleep: TODO"],
+        ),
         (f"{SPIN} for (int i = 0; i < 3; i++) {{ usleep(1000); }}", ["{spin_some: 10 ms, sleep: 3 ms}"]),
         # The description has no loop in which an executor spins twice.
         (f"{SPIN} usleep(1000); {SPIN}", ["TODO"]),
