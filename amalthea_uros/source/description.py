@@ -294,9 +294,11 @@ def _size(key: str, kind: MessageType | None, facts: CodeFacts) -> str:
     length = length_of(kind, facts.types)
     if length is None:
         return f"{key}: {GAP}{_at(None, str(kind))}"
-    if not length.is_fixed:
+    if length.most is None:
         return f"{key}: {GAP}{_at(None, f'{kind}: {length.bytes} B with empty strings and sequences')}"
-    return f"{key}: {length.bytes} B{_at(None, str(kind))}"
+    return (
+        f"{key}: {length.most} B{_at(None, str(kind) if length.is_fixed else f'{kind} with the longest strings and sequences')}"
+    )
 
 
 def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
@@ -329,8 +331,8 @@ def _content(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
         case CodeEntityKind.ACTION_SERVER | CodeEntityKind.ACTION_CLIENT:
             if entity.kind is CodeEntityKind.ACTION_CLIENT:
                 yield f"action: {named}{_at(entity.place)}"
-            for key in ("goal_size", "result_size", "feedback_size"):
-                yield f"{key}: {GAP}{_at(None, str(entity.type or ''))}"
+            for suffix in ("Goal", "Result", "Feedback"):
+                yield _size(f"{suffix.lower()}_size", entity.type.part(suffix) if entity.type is not None else None, facts)
 
 
 def _outputs(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, names: CodeNames) -> Iterator[str]:

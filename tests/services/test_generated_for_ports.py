@@ -38,8 +38,8 @@ def options(texts):
 @pytest.mark.parametrize(
     ("port", "transport"),
     # Libraries for Arduino, PlatformIO and others send by functions of their own, also over UDP.
-    [("arduino", "custom"), ("platformio", "custom"), ("zephyr", "custom"), ("pico-sdk", "custom"), ("espidf", "udp"), ("nuttx", "udp")],
-)  # fmt: skip
+    [*((port, "custom") for port in ("arduino", "platformio", "zephyr", "pico-sdk")), ("espidf", "udp"), ("nuttx", "udp")],
+)
 def test_the_transport_is_that_of_the_port(port, transport, tmp_path):
     assert f"-DRMW_UXRCE_TRANSPORT={transport}" in options(generated(tmp_path, port))
 

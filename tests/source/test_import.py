@@ -157,11 +157,11 @@ def test_two_programs_are_not_mixed(tmp_path):
     ("kind", "expected"),
     [
         # The figures of Micro-XRCE-DDS: Int32 4, Int64 8, Twist 6 * 8, Imu 312 with an empty frame_id.
-        ("std_msgs/msg/Int32", (4, True)),
-        ("std_msgs/msg/Int64", (8, True)),
-        ("geometry_msgs/msg/Twist", (48, True)),
-        ("sensor_msgs/msg/Imu", (312, False)),
-        ("std_msgs/msg/Empty", (1, True)),
+        ("std_msgs/msg/Int32", (4, 4, True)),
+        ("std_msgs/msg/Int64", (8, 8, True)),
+        ("geometry_msgs/msg/Twist", (48, 48, True)),
+        ("sensor_msgs/msg/Imu", (312, None, False)),
+        ("std_msgs/msg/Empty", (1, 1, True)),
         ("my_msgs/msg/Own", None),
     ],
 )
