@@ -53,6 +53,7 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     yield from _sleepless(facts, walk)
     yield from _blocking(facts, walk)
     yield from _pings(facts, walk)
+    yield from _never_again(facts, walk)
 
 
 def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
@@ -189,6 +190,16 @@ def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
             )
+
+
+def _never_again(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    """Programs that do not notice a restart of the agent, after which the session and all entities are gone."""
+    first = next(iter(facts.executors.values()), None)
+    asks = any("ping_agent" in call.name for call in walk.calls)
+    if first is not None and any(spin.is_in_loop for spin in first.spins) and not asks:
+        message = "nothing asks whether the agent is still there: after its restart, nothing is sent or received any more"
+        advice = "Call rmw_uros_ping_agent now and then; without an answer, destroy everything and create it anew."
+        yield Finding("IMP026", Severity.INFO, message, first.spins[0].place, advice)
 
 
 def _sessions(facts: CodeFacts) -> Iterator[Finding]:

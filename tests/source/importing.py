@@ -48,5 +48,10 @@ def described(result, folder):
     return read_description(folder / "app.yaml"), describe(folder / "app.yaml").findings
 
 
+#: Of every program that does not ask for the agent, as most of these.
+_OF_MOST = {"IMP026"}
+
+
 def rules(result):
-    return {finding.rule for finding in result.findings}
+    """The rules of the findings, except of what most programs here do not do."""
+    return {finding.rule for finding in result.findings} - _OF_MOST
