@@ -29,9 +29,9 @@ VALUES = {
 }
 
 
-def filled(text):
+def filled(text, values=VALUES):
     """A description with a value instead of each gap."""
-    return re.sub(r"(\w+): TODO", lambda match: f"{match[1]}: {VALUES.get(match[1], '20 ms')}", text)
+    return re.sub(r"(\w+): TODO", lambda match: f"{match[1]}: {values.get(match[1], '20 ms')}", text)
 
 
 def imported(tmp_path, text, name="main.c", **others):
