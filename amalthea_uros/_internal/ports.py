@@ -1,4 +1,4 @@
-"""What is known of the ports of micro-ROS, the ways in which it is brought to a controller: files in `platforms/ports`."""
+"""The ports of micro-ROS, the ways in which it is brought to a controller: files in `platforms/ports`."""
 
 from __future__ import annotations
 

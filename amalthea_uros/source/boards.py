@@ -16,15 +16,15 @@ _PLATFORMS = (
 )
 #: Boards whose `Serial` is a USB port of the controller itself, so that a rate means nothing.
 _NATIVE_USB = r"teensy\S*|pico\S*|rpipico\S*|rp2040|nanorp2040connect|portenta\S*|zero\S*|mkr\S*|leonardo|adafruit_feather_m\S*"
-#: Boards whose `Serial` is a UART, maybe with another chip for USB behind it.
+#: Boards whose `Serial` is a UART, maybe with another chip for USB.
 _UART = r"esp32|esp32dev|esp32doit\S*|nodemcu-32s|lolin32|esp-wrover-kit|nucleo\S*|uno\S*|mega\S*|due\S*|olimex\S*|ek-ra6m5"
 
 
 def platform_of_board(board: str) -> str | None:
     """The platform of a board of PlatformIO; None if there is none."""
     for pattern, platform in _PLATFORMS:
-        if (found := re.fullmatch(pattern, board)) is not None:
-            return found.expand(platform)
+        if (match := re.fullmatch(pattern, board)) is not None:
+            return match.expand(platform)
     return None
 
 
@@ -34,7 +34,7 @@ def has_freertos(board: str) -> bool:
 
 
 def serial_of_board(board: str) -> str | None:
-    """What `Serial` is on a board, as `app.yaml` calls it; None if that is unknown."""
+    """The kind of port that `Serial` is on a board, as `app.yaml` calls it; None if that is unknown."""
     return "usb_cdc" if re.fullmatch(_NATIVE_USB, board) else "serial" if re.fullmatch(_UART, board) else None
 
 

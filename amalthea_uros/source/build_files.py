@@ -1,4 +1,4 @@
-"""What files of build systems say about the controller: those of PlatformIO, Zephyr, ESP-IDF, CMake and libraries for Arduino."""
+"""Facts about the controller in files of build systems: those of PlatformIO, Zephyr, ESP-IDF, CMake and libraries for Arduino."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from amalthea_uros.source.files import SourceFile
 
 @dataclass(slots=True, kw_only=True)
 class BuildFacts:
-    """What the files say.
+    """The facts in the files.
 
     Attributes
     ----------
@@ -66,8 +66,8 @@ def _settings(file: SourceFile, section: str) -> Iterator[tuple[str, Stated]]:
     current, name = "", ""
     values: dict[str, Stated] = {}
     for row, line in enumerate(file.text.decode("utf-8", "replace").splitlines()):
-        if (found := _SECTION.fullmatch(line.rstrip())) is not None:
-            current, name = found[1], ""
+        if (header := _SECTION.fullmatch(line.rstrip())) is not None:
+            current, name = header[1], ""
         elif current != section or line.lstrip()[:1] in ("#", ";"):
             continue
         elif line[:1].isspace() and name:
@@ -113,8 +113,8 @@ def _transport(stated: Stated, words: Mapping[str, str]) -> Stated | None:
 
 def _distribution(stated: Stated) -> Stated | None:
     """The distribution in the name of a version or branch, such as `2.0.7-humble`; None if there is none, or several."""
-    found = {name for name in DISTRIBUTIONS if re.search(rf"(?<![a-z]){name}(?![a-z])", stated.value.lower())}
-    return Stated(found.pop(), stated.place) if len(found) == 1 else None
+    names = {name for name in DISTRIBUTIONS if re.search(rf"(?<![a-z]){name}(?![a-z])", stated.value.lower())}
+    return Stated(names.pop(), stated.place) if len(names) == 1 else None
 
 
 def _zephyr(facts: BuildFacts, settings: Mapping[str, Stated]) -> None:
@@ -165,8 +165,8 @@ def _cmake(facts: BuildFacts, file: SourceFile) -> None:
     """CMake; the standard input and output of the Pico SDK is its transport, by USB or a UART."""
     text = file.text.decode("utf-8", "replace")
     for pattern, port in _CMAKE_PORTS:
-        if facts.port is None and (found := re.search(pattern, text)) is not None:
-            facts.port = Stated(port, _place(file, text, found.start()))
+        if facts.port is None and (match := re.search(pattern, text)) is not None:
+            facts.port = Stated(port, _place(file, text, match.start()))
     enabled = {
         kind: _place(file, text, match.start())
         for match in _STDIO.finditer(text)

@@ -52,12 +52,12 @@ def idl_types(text: str) -> dict[str, str]:
 
 
 def _members(text: str, aliases: dict[str, str]) -> list[str]:
-    found = []
+    fields = []
     for member in filter(str.strip, text.split(";")):
         field, name, array = _field(member)
         if name != "structure_needs_at_least_one_member":
-            found.append(aliases.get(field, f"{field}{array}"))
-    return found
+            fields.append(aliases.get(field, f"{field}{array}"))
+    return fields
 
 
 def _field(text: str) -> tuple[str, str, str]:
