@@ -31,7 +31,7 @@ class Port:
     pools_of : where these pools are so, after "is 1 ..."
     least_stack : of a task in which an executor spins, in bytes, as the port documents it; None if it does not
     kconfig : build options that its configuration replaces -> their names there
-    sources : of these facts
+    references : the sources of these facts
     """
 
     name: str
@@ -41,7 +41,7 @@ class Port:
     pools_of: str = ""
     least_stack: int | None = None
     kconfig: Mapping[str, str] = field(default_factory=dict)
-    sources: Mapping[str, str] = field(default_factory=dict)
+    references: Mapping[str, str] = field(default_factory=dict)
 
 
 @cache

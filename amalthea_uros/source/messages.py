@@ -154,7 +154,7 @@ _AROUND = {"_Goal": "uint8[16] {}", "_Result": "int8 {}", "_Feedback": "uint8[16
 
 def defined_types(definitions: Iterable[SourceFile]) -> dict[str, str]:
     """The types of the fields of messages, services and actions, by the names of types, in files `package/msg/Name.msg`."""
-    types = {}
+    types: dict[str, str] = {}
     for file in definitions:
         text = file.text.decode("utf-8", "replace")
         if file.path.suffix == ".idl":

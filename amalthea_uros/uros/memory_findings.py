@@ -46,7 +46,7 @@ def _check_stacks(middleware: Middleware, findings: Notes) -> None:
         if executor.stack is not None and executor.stack < 8 * port.least_stack:
             least = f"no task of {port.title} has less than {port.least_stack} B"
             message = f"the stack of {executor.name!r} has {executor.stack // 8} B, but {least}"
-            advice = f"Set {port.least_stack} B or more ({port.sources['least_stack']}), or measure what is used."
+            advice = f"Set {port.least_stack} B or more ({port.references['least_stack']}), or measure what is used."
             findings.warning("UR140", message, executor.location("stack"), advice)
 
 
