@@ -113,7 +113,9 @@ def complete(description: Description, folder: Path, other: str | None = None) -
         models = [platform.middleware, rtos.middleware]
         return _completed(description, platform, [platform.os, rtos.os], models, folder, findings)
     rtos = _rtos(description.os, folder, findings)
-    return _completed(description, platform, [rtos.os], [rtos.middleware, platform.middleware], folder, findings)
+    # The port of the platform is one to its own operating system.
+    model = platform.middleware.model_copy(update={"port": None})
+    return _completed(description, platform, [rtos.os], [rtos.middleware, model], folder, findings)
 
 
 def _completed(

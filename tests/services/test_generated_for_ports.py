@@ -63,3 +63,28 @@ def test_the_pools_of_zephyr_are_in_its_configuration(tmp_path):
     (tmp_path / "colcon.meta").write_text(json.dumps(meta))
     (finding, *_) = check_colcon_meta(tmp_path / "app.yaml", tmp_path / "colcon.meta").findings
     assert (finding.rule, "CONFIG_MICROROS_SUBSCRIBERS" in finding.help) == ("GEN005", True)
+
+
+BOARD = "hardware: {{platform: {board}}}\nos: {{rtos: {rtos}}}\n"
+
+
+@pytest.mark.parametrize(
+    ("board", "rtos", "port", "transport", "publishers"),
+    [
+        # The board's own port, that of ESP-IDF; and another one on the same board, whose smallest library has as many.
+        ("esp32", "freertos", None, "udp", 2),
+        ("nucleo-f767zi", "freertos", "platformio", "custom", 2),
+        ("nucleo-f767zi", "freertos", None, "custom", 10),
+        # The port of a board with FreeRTOS says nothing about NuttX: the defaults of the packages are left, as the limits are too small.
+        ("nucleo-f767zi", "nuttx", None, "udp", 4),
+    ],
+)
+def test_a_board_says_only_what_holds_for_its_port(board, rtos, port, transport, publishers, tmp_path):
+    text = APP.format(port=port, ros="humble").replace("  port: None\n", "")
+    hardware = "hardware: {platform: generic, frequency: 100 MHz}\n"
+    (tmp_path / "app.yaml").write_text(text.replace(hardware, BOARD.format(board=board, rtos=rtos)))
+    result = generate(tmp_path / "app.yaml", tmp_path)
+    assert f"-DRMW_UXRCE_TRANSPORT={transport}" in options(result.texts)
+    profile = result.assembly.profile
+    available = {option.name: option.available for option in profile.options(result.assembly.description.application)}
+    assert available["RMW_UXRCE_MAX_PUBLISHERS"] == publishers
