@@ -75,7 +75,7 @@ BOARD = "hardware: {{platform: {board}}}\nos: {{rtos: {rtos}}}\n"
         ("esp32", "freertos", None, "udp", 2),
         ("nucleo-f767zi", "freertos", "platformio", "custom", 2),
         ("nucleo-f767zi", "freertos", None, "custom", 10),
-        # The port of a board with FreeRTOS says nothing about NuttX: the defaults of the packages are left, as the limits are too small.
+        # The port of a board with FreeRTOS says nothing about NuttX: as the limits are too small, the defaults are left.
         ("nucleo-f767zi", "nuttx", None, "udp", 4),
     ],
 )
