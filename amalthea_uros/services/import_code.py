@@ -54,7 +54,7 @@ def import_code(
 
     given = [Path(paths)] if isinstance(paths, str | PathLike) else [Path(path) for path in paths]
     file = None if target is None else Path(target)
-    facts = read_facts(read_sources(given))
+    facts = read_facts(read_sources(given), board)
     name = given[0].resolve().stem if given else "app"
     text = description_text(facts, name.strip() or "app", board, option_units())
     if file is not None:

@@ -69,7 +69,7 @@ def line(text: str, key: str) -> str:
 
 
 def messages(result) -> list[str]:
-    return [each.message for each in result.findings if each.rule == "IMP024"]
+    return [each.message for each in result.findings if each.rule == "IMP027"]
 
 
 def filled(text: str) -> str:

@@ -14,7 +14,7 @@ _ADVICE = "Describe what it does by hand, or change the application; results are
 def findings_of_recording(host: RecordedHost) -> Iterator[Finding]:
     """The findings, in the order of the executors."""
     for message, name in _messages(host):
-        yield Finding("IMP024", Severity.WARNING, message, help=_ADVICE, object=name)
+        yield Finding("IMP027", Severity.WARNING, message, help=_ADVICE, object=name)
 
 
 def _messages(host: RecordedHost) -> Iterator[tuple[str, str]]:
