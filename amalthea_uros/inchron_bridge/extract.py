@@ -64,7 +64,8 @@ def _system(context: Importing, model: ProjectObject) -> System:
     dispatch = extract_systems(context, model)
     software = extract_software(context, model, stimuli.of_process)
     events = EventsReader(context, model)
-    result = events.read()
+    events.read()
+    constraints = extract_constraints(context, model, events)
     system = System(
         hardware=hardware,
         os=Os(
@@ -79,8 +80,8 @@ def _system(context: Importing, model: ProjectObject) -> System:
             isrs=tuple(dispatch.isrs),
             placements=extract_placements(context, model),
         ),
-        events=result,
-        constraints=extract_constraints(context, model, events),
+        events=events.events_and_chains(),
+        constraints=constraints,
     )
     return _with_unknown(in_kept_order(_with_middleware(system, context, model), context.noted(model)), dispatch)
 
