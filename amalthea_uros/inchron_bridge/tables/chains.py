@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import keep_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole, note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.perf import events as perf
+from amalthea_uros.perf.constraints import ChainEnd, ChainSynchronization
 from amalthea_uros.timing.dataflow.chains import Fork, Unfolded, unfold
 
 #: The trace event of each transition; transitions without one cannot be observed there.
@@ -24,6 +25,8 @@ LABEL_EVENTS = {perf.LabelChange.READ: "read", perf.LabelChange.WRITE: "write"}
 TRACE_EVENT, BARRIER = "EventGraphTraceEvent", "EventGraphSynchronizationBarrier"
 #: The key of a chain in the comment of its graph.
 CHAIN = "chain"
+#: The key in the comment of a graph that only serves a limit, whose comment says what is meant.
+SYNCHRONIZED = "synchronized"
 
 
 def trace_event(event: perf.Event | None, context: Exporting) -> tuple[ProjectObject, ProjectObject | None]:
@@ -106,26 +109,11 @@ class _ChainGraph:
             raise UnknownError("it begins with one of several events, and a graph begins with one")
         start, last = self.event(first), inside.pop()
         before = self.line(tuple(inside), start)
-        ends = (last,) if isinstance(last, str) else self.joint_ends(last)
-        terminals = [self.event(name) for name in ends]
-        for terminal in terminals:
-            link(terminal, before)
-        for node, name in (*self.inner, (start, first), *zip(terminals, ends, strict=True)):
+        ends = {name: link(self.event(name), self.line(branch, before)) for branch, name in joint_ends(last)}
+        for node, name in (*self.inner, (start, first), *((node, name) for name, node in ends.items())):
             node["name"] = self.free(name)
             self.graph.add("nodes", node)
-        self.graph["initialNode"], self.graph["terminalNodes"] = start, terminals
-
-    @staticmethod
-    def joint_ends(fork: Fork) -> tuple[str, ...]:
-        """The events that have to occur at the end: a requirement may be about several steps."""
-        ends = tuple(name for branch in fork.branches for name in branch if isinstance(name, str))
-        if (
-            fork.needed < len(fork.branches)
-            or any(len(branch) != 1 for branch in fork.branches)
-            or len(ends) != len(fork.branches)
-        ):
-            raise UnknownError("it ends with one of several events")
-        return ends
+        self.graph["initialNode"], self.graph["terminalNodes"] = start, ends.values()
 
     def line(self, events: Unfolded, before: ProjectObject) -> ProjectObject:
         """Make the nodes after another one; returns the last one."""
@@ -168,6 +156,35 @@ class _ChainGraph:
             name, number = f"{own}_{number}", number + 1
         self.names.add(name)
         return name
+
+
+def joint_ends(last: str | Fork) -> list[tuple[Unfolded, str]]:
+    """The events that have to occur at the end, each after what is in its branch: a requirement may be about several steps."""
+    if isinstance(last, str):
+        return [((), last)]
+    ends = [(branch[:-1], branch[-1]) for branch in last.branches if branch and isinstance(branch[-1], str)]
+    result = [(before, str(name)) for before, name in ends]
+    if last.needed < len(last.branches) or len({name for _, name in result}) < len(last.branches):
+        raise UnknownError("it ends with one of several events")
+    return result
+
+
+def build_synchronized(limit: ChainSynchronization, context: Exporting) -> ProjectObject:
+    """A graph of chains that begin with the same event, each of which ends with a step of its own.
+
+    Raises
+    ------
+    UnknownError : the chains have no such graph.
+    """
+    chains = [context.system.chains.get(name) for name in limit.chains]
+    lines = [unfold(chain, context.system)[0] for chain in chains if chain is not None]
+    if limit.end is not ChainEnd.RESPONSE or len({line[0] for line in lines}) != 1 or None in chains:
+        raise UnknownError("its chains do not begin with the same event and end together")
+    graph = ProjectObject("EventGraph", name=f"{limit.name}_chains")
+    _ChainGraph(graph, context).build((lines[0][0], Fork(tuple(line[1:] for line in lines), len(lines))))
+    note(graph, **{SYNCHRONIZED: True})
+    context.model.add("eventChains", graph)
+    return graph
 
 
 def link(node: ProjectObject, before: ProjectObject) -> ProjectObject:

@@ -11,11 +11,13 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.seals import is_sealed
 from amalthea_uros.inchron_bridge.tables.chains import (
     CHAIN,
     LABEL_EVENTS,
     PROCESS_EVENTS,
     RUNNABLE_EVENTS,
+    SYNCHRONIZED,
 )
 from amalthea_uros.inchron_bridge.tables.graphs_back import Join, Way, ways_of
 from amalthea_uros.perf import events as perf
@@ -52,6 +54,8 @@ class EventsReader:
             self.names.setdefault(_meaning(event), event.name)
         known = {event.name for event in self.events}
         for item in self.model["eventChains"]:
+            if SYNCHRONIZED in self.context.noted(item) and is_sealed(item):
+                continue
             found = self.chains_of(item)
             self.chains[item] = tuple(chain.name for chain in found)
             self.result += found
