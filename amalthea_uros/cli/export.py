@@ -103,15 +103,16 @@ def export(
     'export --importer -o %t %f %F'.
     """
     from amalthea_uros.services import export as service
+    from amalthea_uros.services.project_ids import hashed, valued
 
     if is_importer and mapping is not None and (target is None or is_stream(target)):
         click.echo("[amuros] Error: a mapping is between files: write the project to a file, too, by -o", err=True)
         sys.exit(_WRONG_USE)
     ids = NAMESPACE
     if stable_from_value is not None:
-        ids = service.valued(stable_from_value)
+        ids = valued(stable_from_value)
     elif stable_from_hash:
-        ids = service.hashed(paths)
+        ids = hashed(paths)
     elif no_stable:
         ids = uuid4()
     try:

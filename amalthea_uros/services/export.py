@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
-from uuid import UUID, uuid5
+from uuid import UUID
 
-from amalthea_uros._internal.files import STANDARD_INPUT, FileError, is_stream, read_bytes
+from amalthea_uros._internal.files import is_stream
 from amalthea_uros._internal.garbage import paused_garbage_collection
-from amalthea_uros._internal.limits import MODEL_SIZE
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
@@ -19,10 +18,9 @@ from amalthea_uros.inchron.ids import NAMESPACE
 from amalthea_uros.inchron.read import SUFFIX, is_project_name
 from amalthea_uros.inchron.write import project_text
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.perf.system import System
+from amalthea_uros.services.executor_iterations import iterations_of
 from amalthea_uros.services.files import save_texts
 from amalthea_uros.services.subject import SystemInput, open_system
-from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from amalthea_uros.inchron.objects import ProjectObject
@@ -103,28 +101,11 @@ def _project(opened: SystemInput, *, with_memories: bool) -> ProjectBuild:
 
 
 def _mapping_text(opened: SystemInput, project: ProjectObject, ids: UUID, target: Path) -> str:
-    from amalthea_uros.inchron_bridge.mapping import mapping_text
+    from amalthea_uros.inchron.mapping import mapping_text
 
     if opened.model is None or is_stream(target):
         raise InvalidArgumentError("a mapping is between files: it needs an AMALTHEA model, and -o with the project")
     return mapping_text(opened.model, project, ids, target)
-
-
-def iterations_of(system: System) -> dict[str, tuple[Time, Time]]:
-    """The shortest and the longest time between two iterations of executors, by the stimuli that stand for them, where it is bounded.
-
-    These are what the analysis proves; where it proves none, nothing is in the result.
-    """
-    if not system.executors:
-        return {}
-    from amalthea_uros.analyze.system import analyze_system
-
-    result: dict[str, tuple[Time, Time]] = {}
-    for executor in analyze_system(system).executors:
-        least, most = executor.loop.least, executor.loop.most
-        if most is not None and least < most:
-            result |= dict.fromkeys(system.processes[executor.task].stimuli, (least, most))
-    return result
 
 
 def _model_text(opened: SystemInput) -> str:
@@ -132,25 +113,3 @@ def _model_text(opened: SystemInput) -> str:
     from amalthea_uros.xmi.emf.writer import document_text
 
     return document_text(build_model(opened.system).documents[0])
-
-
-def hashed(paths: Sequence[Path]) -> UUID:
-    """The namespace of ids that depends on the content of files.
-
-    Raises
-    ------
-    InvalidArgumentError : a file cannot be read.
-    """
-    result = NAMESPACE
-    for path in paths:
-        try:
-            content = b"" if path == STANDARD_INPUT else read_bytes(path, MODEL_SIZE)
-        except FileError as error:
-            raise InvalidArgumentError(f"{path} cannot be read: {error.reason}") from None
-        result = uuid5(result, content.hex())
-    return result
-
-
-def valued(text: str) -> UUID:
-    """The namespace of ids that depends on a text."""
-    return uuid5(NAMESPACE, text)

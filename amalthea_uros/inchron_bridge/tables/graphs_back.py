@@ -43,7 +43,7 @@ def ways_of(graph: ProjectObject, level: int = 0) -> dict[str, Way]:
     result: dict[str, Way] = {}
     visited: set[ProjectObject] = set()
     for choices in product((True, False), repeat=len(decisions)):
-        walk = _Walk(graph, dict(zip(decisions, choices, strict=True)), level)
+        walk = _GraphWalk(graph, dict(zip(decisions, choices, strict=True)), level)
         way = walk.way()
         visited |= walk.visited
         if way is not None and way not in result.values():
@@ -61,7 +61,7 @@ def joined_steps(way: Way) -> list[ProjectObject]:
     return [step for branch in last.branches for step in branch if isinstance(step, ProjectObject)]
 
 
-class _Walk:
+class _GraphWalk:
     """One walk through a graph, along the branches that its decisions choose."""
 
     def __init__(self, graph: ProjectObject, choices: dict[ProjectObject, bool], level: int) -> None:
