@@ -119,7 +119,8 @@ def build(
     The decisions are shown: the period and priority of each task, the messages on the bus, the start of the middleware and its
     static pools. All errors are reported in one run, with their locations; nothing is written then.
     """
-    from amalthea_uros.services.build import BuildTarget, build_file
+    from amalthea_uros.services.build import build_file
+    from amalthea_uros.services.build_targets import BuildTarget
     from amalthea_uros.validate.settings import project_settings
 
     is_filter = target is None and description == STANDARD_INPUT

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,22 +14,13 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
+from amalthea_uros.services.build_targets import BuildTarget, system_for
 from amalthea_uros.services.files import refuse
 from amalthea_uros.uros.assemble import Assembly
 
 if TYPE_CHECKING:
     from amalthea_uros.metamodel.model import Document, Model
     from amalthea_uros.perf.system import System
-
-
-#: The AMALTHEA version in which allocations of tasks have no deadlines.
-_WITHOUT_DEADLINES = "1.2.0"
-
-
-class BuildTarget(StrEnum):
-    """A tool that reads models in a way of its own."""
-
-    INCHRON = "inchron"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,17 +111,8 @@ def build(
     with paused_garbage_collection():
         assembly = describe(path, platform)
         system = system_with_bus(assembly, path) if with_bus else assembly.system
-        changes: tuple[Finding, ...] = ()
-        if tool is BuildTarget.INCHRON:
-            system, changes = _importable(system, version)
+        system, changes = system_for(tool, system, version)
         return BuildResult(description=Path(path), model=build_model(system, version), assembly=assembly, changes=changes)
-
-
-def _importable(system: System, version: str | None) -> tuple[System, tuple[Finding, ...]]:
-    from amalthea_uros.inchron_bridge.importable import importable
-    from amalthea_uros.services.executor_iterations import iterations_of
-
-    return importable(system, iterations_of(system), with_deadlines=version != _WITHOUT_DEADLINES)
 
 
 def build_file(

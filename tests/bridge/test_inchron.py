@@ -17,7 +17,7 @@ from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import OperatingSystem, Os, Scheduler
 from amalthea_uros.perf.system import System
-from amalthea_uros.services.build import BuildTarget
+from amalthea_uros.services.build_targets import BuildTarget
 from amalthea_uros.services.check import summaries
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
