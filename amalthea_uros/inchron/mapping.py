@@ -73,14 +73,14 @@ def mapping_text(model: Model, project: ProjectObject, ids: UUID, target: Path) 
 
 
 def _pairs(model: Model, project: ProjectObject) -> Iterator[tuple[Element, Path, ProjectObject]]:
-    found: dict[tuple[str, str], list[ProjectObject]] = defaultdict(list)
+    objects: dict[tuple[str, str], list[ProjectObject]] = defaultdict(list)
     for item in project.walk():
         for kind in (item.kind, f"{package_of(item.kind)}."):
-            found[kind, item.name].append(item)
+            objects[kind, item.name].append(item)
     for document in model.documents:
         for element in document.root.walk():
             kinds = next((kinds for source, kinds in _COUNTERPARTS if isinstance(element, source)), ())
-            items = [item for kind in kinds for item in found[kind, getattr(element, "name", None) or ""]]
+            items = [item for kind in kinds for item in objects[kind, getattr(element, "name", None) or ""]]
             if len(items) == 1:
                 yield element, document.path or Path("model.amxmi"), items[0]
 

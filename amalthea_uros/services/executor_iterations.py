@@ -1,4 +1,4 @@
-"""How often executors in loops iterate, for tools that cannot tell themselves."""
+"""How often executors in loops iterate, for tools that cannot compute it."""
 
 from __future__ import annotations
 

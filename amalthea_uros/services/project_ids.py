@@ -1,4 +1,4 @@
-"""What the ids of an INCHRON project may depend on, besides names."""
+"""Namespaces for the ids of an INCHRON project."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from amalthea_uros.inchron_bridge.tables.chains import (
     RUNNABLE_EVENTS,
     SYNCHRONIZED,
 )
-from amalthea_uros.inchron_bridge.tables.graphs_back import Join, Way, ways_of
+from amalthea_uros.inchron_bridge.tables.graphs_back import GraphRoute, Join, routes_of
 from amalthea_uros.perf import events as perf
 
 _PROCESS = {name: change for change, name in PROCESS_EVENTS.items()}
@@ -35,7 +35,7 @@ class EventsReader:
     events : all of them
     result : the chains
     chains : names of the chains of each graph
-    ways : the steps of each graph that is read, rather than what its comment keeps
+    routes : the steps of each graph that is read, rather than what its comment keeps
     """
 
     def __init__(self, context: Importing, model: ProjectObject) -> None:
@@ -45,7 +45,7 @@ class EventsReader:
         self.names: dict[Any, str] = {}
         self.result: list[perf.EventChain] = []
         self.chains: dict[ProjectObject, tuple[str, ...]] = {}
-        self.ways: dict[ProjectObject, tuple[Way, ...]] = {}
+        self.routes: dict[ProjectObject, tuple[GraphRoute, ...]] = {}
 
     def read(self) -> None:
         """Read all."""
@@ -56,9 +56,9 @@ class EventsReader:
         for item in self.model["eventChains"]:
             if SYNCHRONIZED in self.context.noted(item) and is_sealed(item):
                 continue
-            found = self.chains_of(item)
-            self.chains[item] = tuple(chain.name for chain in found)
-            self.result += found
+            made = self.chains_of(item)
+            self.chains[item] = tuple(chain.name for chain in made)
+            self.result += made
         taken = {chain.name for chain in self.result}
         kept = self.context.list_of(self.model, "chains", (perf.EventChain,))
         self.result += [chain for chain in kept if _events_of(chain) <= known and chain.name not in taken]
@@ -104,7 +104,7 @@ class EventsReader:
         return self.names[meaning]
 
     def chains_of(self, item: ProjectObject) -> list[perf.EventChain]:
-        """The chains of a graph, one for each way that its decisions choose; without events, with a finding, if it is not understood.
+        """The chains of a graph, one for each route that its decisions choose; without events, with a finding, if it is not understood.
 
         A chain without events has no latency, so that limits of it stay unknown.
         """
@@ -116,41 +116,41 @@ class EventsReader:
         known = {event.name for event in self.events}
         if kept is not None and _events_of(kept) <= known:
             with suppress(UnknownError):
-                self.ways[item] = tuple(ways_of(item).values())
+                self.routes[item] = tuple(routes_of(item).values())
             return [perf.EventChain(name=name, stimulus=kept.stimulus, response=kept.response, items=kept.items, origin=origin)]
         if item.kind != "EventGraph":
             return [perf.EventChain(name=name, origin=origin)]
         try:
-            ways = ways_of(item)
-            result = [self.chain(f"{name}_{choice}" if choice else name, way, origin) for choice, way in ways.items()]
+            routes = routes_of(item)
+            result = [self.chain(f"{name}_{choice}" if choice else name, route, origin) for choice, route in routes.items()]
         except UnknownError as error:
             self.context.note("INC006", f"the event chain {item.name!r} is left out: {error}", item)
             return [perf.EventChain(name=name, origin=origin)]
         if len(result) > 1:
             message = f"the event chain {item.name!r} has decisions; it is read as {', '.join(each.name for each in result)}"
             self.context.note("INC009", message, item, Severity.INFO)
-        self.ways[item] = tuple(ways.values())
+        self.routes[item] = tuple(routes.values())
         return result
 
     def part(self, graph: ProjectObject, number: int, start: ProjectObject, end: ProjectObject) -> str:
-        """The name of a chain that is a part of one of the ways of a graph, from one step to another.
+        """The name of a chain that is a part of one of the routes of a graph, from one step to another.
 
         Raises
         ------
         UnknownError : the steps are within branches, or the other way round.
         """
-        way, whole = self.ways[graph][number], self.chains[graph][number]
-        if start not in way or end not in way or way.index(start) >= way.index(end):
+        route, whole = self.routes[graph][number], self.chains[graph][number]
+        if start not in route or end not in route or route.index(start) >= route.index(end):
             raise UnknownError("it is about steps within branches of its event chain, or not in their order")
-        steps = way[way.index(start) : way.index(end) + 1]
-        name = f"{whole}_{way.index(start)}_{way.index(end)}"
+        steps = route[route.index(start) : route.index(end) + 1]
+        name = f"{whole}_{route.index(start)}_{route.index(end)}"
         if name not in {chain.name for chain in self.result}:
             self.result.append(self.chain(name, steps, self.context.location(graph)))
         return name
 
-    def chain(self, name: str, way: Way, origin: Any) -> perf.EventChain:
-        """The chain of a way."""
-        first, *inside = self.named(way)
+    def chain(self, name: str, route: GraphRoute, origin: Any) -> perf.EventChain:
+        """The chain of a route."""
+        first, *inside = self.named(route)
         if not inside:
             return perf.EventChain(name=name, stimulus=str(first), response=str(first), origin=origin)
         last = inside.pop()
@@ -159,13 +159,13 @@ class EventsReader:
             name=name, stimulus=str(first), response=response, items=_items(str(first), inside, response), origin=origin
         )
 
-    def named(self, way: Way) -> list[Any]:
-        """A way with the names of events."""
+    def named(self, route: GraphRoute) -> list[Any]:
+        """A route with the names of events."""
         return [
             Join(tuple(tuple(self.named(branch)) for branch in each.branches), each.needed)
             if isinstance(each, Join)
             else self.event(each["traceEvent"], each["process"], each.owner.name if each.owner is not None else "")
-            for each in way
+            for each in route
         ]
 
     def joint(self, wish: str, ends: Join) -> str:
@@ -174,7 +174,7 @@ class EventsReader:
 
 
 def _items(before: str | None, parts: list[Any], after: str | None) -> perf.Sequence | perf.Parallel | None:
-    """What is between two events; None: what is there is no event."""
+    """The parts between two events; None stands for an end without an event."""
     if not parts:
         return None
     if len(parts) == 1 and isinstance(parts[0], Join):

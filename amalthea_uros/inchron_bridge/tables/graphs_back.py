@@ -1,4 +1,4 @@
-"""The ways through an event graph: steps in order, and where branches are joined."""
+"""The routes through an event graph: steps in order, and where branches are joined."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from amalthea_uros.inchron_bridge.tables.chains import BARRIER, TRACE_EVENT
 #: Nodes with one step, and nodes with two, one after the other.
 _STEPS = {TRACE_EVENT: ("first",), "EventGraphProcess": ("first", "second"), "EventGraphTraceFunction": ("first", "second")}
 _DECISION, _SUB_GRAPH = "EventGraphDecision", "EventGraphSubGraph"
-#: More decisions would be too many ways, and more levels or steps a graph that is damaged.
+#: More decisions would be too many routes, and more levels or steps a graph that is damaged.
 _MOST_DECISIONS = 6
 _MOST_LEVELS = 20
 _MOST_STEPS = 10_000
@@ -22,16 +22,16 @@ _MOST_STEPS = 10_000
 class Join:
     """Branches side by side, of which a number has to complete."""
 
-    branches: tuple[Way, ...]
+    branches: tuple[GraphRoute, ...]
     needed: int
 
 
 #: Steps (`ConditionalTraceEvent`) and joins, in order.
-Way = tuple["ProjectObject | Join", ...]
+GraphRoute = tuple["ProjectObject | Join", ...]
 
 
-def ways_of(graph: ProjectObject, level: int = 0) -> dict[str, Way]:
-    """All ways through a graph, by what its decisions choose for them: "" without decisions.
+def routes_of(graph: ProjectObject, level: int = 0) -> dict[str, GraphRoute]:
+    """All routes through a graph, by what its decisions choose for them: "" without decisions.
 
     Raises
     ------
@@ -40,22 +40,24 @@ def ways_of(graph: ProjectObject, level: int = 0) -> dict[str, Way]:
     decisions = [node for node in graph["nodes"] if node.kind == _DECISION]
     if len(decisions) > _MOST_DECISIONS or level > _MOST_LEVELS:
         raise UnknownError("it has too many decisions, or contains itself")
-    result: dict[str, Way] = {}
+    result: dict[str, GraphRoute] = {}
     visited: set[ProjectObject] = set()
     for choices in product((True, False), repeat=len(decisions)):
         walk = _GraphWalk(graph, dict(zip(decisions, choices, strict=True)), level)
-        way = walk.way()
+        route = walk.route()
         visited |= walk.visited
-        if way is not None and way not in result.values():
-            result["_".join(str(choices[place]).lower() for place, each in enumerate(decisions) if each in walk.visited)] = way
+        if route is not None and route not in result.values():
+            result["_".join(str(choices[place]).lower() for place, each in enumerate(decisions) if each in walk.visited)] = (
+                route
+            )
     if not result or visited != set(graph["nodes"]):
-        raise UnknownError("not all of its nodes are on a way to its end")
+        raise UnknownError("not all of its nodes are on a route to its end")
     return result
 
 
-def joined_steps(way: Way) -> list[ProjectObject]:
-    """The steps that a way ends with: several if all of them have to occur."""
-    last = way[-1]
+def joined_steps(route: GraphRoute) -> list[ProjectObject]:
+    """The steps that a route ends with: several if all of them have to occur."""
+    last = route[-1]
     if isinstance(last, ProjectObject):
         return [last]
     return [step for branch in last.branches for step in branch if isinstance(step, ProjectObject)]
@@ -75,15 +77,15 @@ class _GraphWalk:
             for before in node["predecessors"]:
                 self.after.setdefault(before, []).append(node)
 
-    def way(self) -> Way | None:
-        """The way to the end; None if a decision leads nowhere."""
+    def route(self) -> GraphRoute | None:
+        """The route to the end; None if a decision leads nowhere."""
         if self.graph["initialNode"] is None:
             raise UnknownError("it does not begin anywhere")
         result, stop = self.line(self.graph["initialNode"], 0)
         if any(node.kind == _DECISION for node in self.ends):
             return None
         if stop is not None or not result or not isinstance(result[0], ProjectObject):
-            raise UnknownError("a barrier in it waits for steps to which nothing leads")
+            raise UnknownError("a barrier in it waits for steps that cannot be reached")
         if not self.ends <= set(self.graph["terminalNodes"]) or any(
             self.after.get(node) for node in self.graph["terminalNodes"]
         ):
@@ -93,7 +95,7 @@ class _GraphWalk:
             raise UnknownError("it ends with several branches")
         return result
 
-    def line(self, node: ProjectObject, depth: int) -> tuple[Way, ProjectObject | None]:
+    def line(self, node: ProjectObject, depth: int) -> tuple[GraphRoute, ProjectObject | None]:
         """The steps from a node on, to the end or to the barrier that joins the branch, which is the second result."""
         if depth > _MOST_LEVELS:
             raise UnknownError("its branches have too many branches")
@@ -122,7 +124,7 @@ class _GraphWalk:
             result.append(Join(branches, min(barrier["minItems"], len(branches)) or len(branches)))
             node = barrier
 
-    def entered(self, node: ProjectObject) -> Way:
+    def entered(self, node: ProjectObject) -> GraphRoute:
         """The steps of a node itself."""
         if node in self.visited:
             raise UnknownError("it has a circle, or steps that follow several others without a barrier")
@@ -130,10 +132,10 @@ class _GraphWalk:
         if node.kind in _STEPS:
             return tuple(_plain(node[name], node) for name in _STEPS[node.kind])
         if node.kind == _SUB_GRAPH and node["subGraph"] is not None:
-            (way, *others) = ways_of(node["subGraph"], self.level + 1).values()
+            (route, *others) = routes_of(node["subGraph"], self.level + 1).values()
             if others:
                 raise UnknownError("a graph in it has decisions")
-            return way
+            return route
         if node.kind in (BARRIER, _DECISION):
             return ()
         raise UnknownError(f"the node {node.name!r} is an {node.kind}")

@@ -54,7 +54,7 @@ def _clock(clock: ProjectObject, context: Importing) -> perf.Clock:
 
 
 def loads_of_processors(model: ProjectObject) -> list[ProjectObject]:
-    """What may take time of the cores of a processor, and is not understood: hypervisors, and peripherals, which may interrupt them."""
+    """Hypervisors and peripherals, which may take time of the cores of their processor, and are not understood."""
     return [part for cpu in model["cpus"] for feature, part in cpu.parts() if feature.name in _LOADS]
 
 

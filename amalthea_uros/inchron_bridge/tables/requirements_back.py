@@ -110,11 +110,11 @@ def _chains(item: ProjectObject, events: EventsReader) -> list[str]:
     if item["instanceOffset"] or (item["orSemanticsStart"] and len(start) > 1) or (item["orSemanticsEnd"] and len(end) > 1):
         raise UnknownError("it compares several instances of its event chain, or is about one of several steps")
     chains = events.chains[graph]
-    if graph not in events.ways:
+    if graph not in events.routes:
         return list(chains)
     result = []
-    for number, way in enumerate(events.ways[graph]):
-        if start == [way[0]] and set(end) == set(joined_steps(way)):
+    for number, route in enumerate(events.routes[graph]):
+        if start == [route[0]] and set(end) == set(joined_steps(route)):
             result.append(chains[number])
         elif len(start) == 1 and len(end) == 1:
             result.append(events.part(graph, number, start[0], end[0]))

@@ -83,7 +83,7 @@ def _in_order(names: list[str], order: Any) -> tuple[str, ...]:
 
 
 def _not_understood(process: ProjectObject, context: Importing) -> Iterator[Incomplete]:
-    """What stands for the features of a process by which it may be activated or executed more than its call graph says."""
+    """Activities of unknown demand for the features by which a process may be executed more than its call graph says."""
     for feature in ("server", "maxThreads", "threadPool", "triggeringPort", "idleTask"):
         if process[feature]:
             context.leave_out(process, f"Process.{feature}")

@@ -49,7 +49,7 @@ _BITS: Mapping[type[Element], tuple[str, int]] = {
 
 @model_rule("INC-IO-RANGE", *_BITS)
 def _check_range(element: Task | IntegerObject | Time, context: Context) -> Iterator[str]:
-    feature, bits = next(found for cls, found in _BITS.items() if isinstance(element, cls))
+    feature, bits = next(entry for cls, entry in _BITS.items() if isinstance(element, cls))
     value = getattr(element, feature)
     if value is not None and not -(2 ** (bits - 1)) <= value < 2 ** (bits - 1):
         yield f"the value {value} of the {type(element).__name__} does not fit into {bits} bits and is changed by am2inc"
