@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExportResult(Brief):
+class ExportedModel(Brief):
     """A model in the language of another tool.
 
     Attributes
@@ -53,7 +53,7 @@ def export(
     mapping: StrPath | None = None,
     with_memories: bool = True,
     write: bool = True,
-) -> ExportResult:
+) -> ExportedModel:
     """Write models, or an `app.yaml`, as an INCHRON project; and a project, if that is given, as an AMALTHEA model.
 
     Parameters
@@ -89,7 +89,7 @@ def export(
     if write:
         save_texts(texts)
     result = unsuppressed((*opened.findings, *findings))
-    return ExportResult(paths=opened.paths, target=target, text=texts[target], findings=result)
+    return ExportedModel(paths=opened.paths, target=target, text=texts[target], findings=result)
 
 
 def _project(opened: SystemInput, *, with_memories: bool) -> ProjectBuild:
