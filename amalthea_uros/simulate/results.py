@@ -55,6 +55,7 @@ class Simulation(Shown):
     duration : model time
     left_out : the processes that are not simulated, each with the reason
     executors : those that loop
+    host : the executors of the host, if it is simulated
     losses : the messages on wires of which it is stated how many they lose
     runnables : those that requirements limit
     labels : those that were asked for
@@ -72,6 +73,7 @@ class Simulation(Shown):
     left_out: Results[ProcessObservation] = field(default_factory=Results)
     chains: Results[ChainObservation] = field(default_factory=Results)
     executors: Results[ExecutorObservation] = field(default_factory=Results)
+    host: Results[ExecutorObservation] = field(default_factory=Results)
     losses: Results[LossObservation] = field(default_factory=Results)
     runnables: Results[RunnableObservation] = field(default_factory=Results)
     labels: Results[LabelObservation] = field(default_factory=Results)

@@ -14,10 +14,14 @@ from amalthea_uros.executors.semantics.steps import IterationStep, iterations_na
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, ThreadPlace, TriggerKind
+from amalthea_uros.perf.host import HostCallback, HostExecutor
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.flows import FlowRecords
+from amalthea_uros.simulate.program.host_programs import add_thread
+from amalthea_uros.simulate.program.host_records import HostRecords
+from amalthea_uros.simulate.program.host_system import host_name
 from amalthea_uros.simulate.program.image import JumpLabel
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.resources import Resources
@@ -83,7 +87,7 @@ class ExecutorRecords:
             layout.MESSAGES_PER_WAIT: waiting.messages_per_wait or 0,
             layout.KEPT_END_WAIT: int(waiting.stored_data_ends_wait),
             layout.FLAGS_END_WAIT: int(waiting.guard_conditions_end_wait),
-            layout.WAIT_ALARM: self.messages.alarm(layout.END_OF_WAIT, record),
+            layout.WAIT_ALARM: self.messages.lines.alarm(layout.END_OF_WAIT, record),
             layout.HANDLES: first,
             layout.HANDLES_END: end,
             layout.TRIGGER_SETS: sets,
@@ -96,7 +100,7 @@ class ExecutorRecords:
             layout.SLEEP_RESOLUTION: time(SLEEP_RESOLUTION),
             layout.LOOP_STIMULUS: resources.stimuli[iterations_name(following.name)],
             layout.KEEPS_TURN: int(following is executor),
-            layout.LOOP_ALARM: self.messages.alarm(layout.NEXT_ITERATION, record, at=begin),
+            layout.LOOP_ALARM: self.messages.lines.alarm(layout.NEXT_ITERATION, record, at=begin),
         }
         image.put(record, fields)
 
@@ -133,6 +137,26 @@ class ExecutorRecords:
         for (executor, _, _), record in self._publications.items():
             records[executor].append(record)
         return records
+
+    @property
+    def host(self) -> HostRecords:
+        """The executors of the host."""
+        return self.messages.host
+
+    def measure_host(self, executor: HostExecutor, callback: HostCallback, thread: int) -> int:
+        """The record of the calls of a callback of the host by a thread, from when they were released."""
+        key = (host_name(executor), callback.name)
+        if key not in self.measured:
+            self.measured.append(key)
+        number = self.first_number + self.measured.index(key)
+        fields = {layout.EXECUTION_NUMBER: number, layout.ASKED_AT: thread + layout.CALLED_SINCE}
+        return self.resources.image.record(layout.EXECUTION_SIZE, fields)
+
+    def host_publications(self, callback: HostCallback) -> Iterator[int]:
+        """The records of what a callback of the host publishes at its end."""
+        for topic in callback.publishes:
+            for line in self.host.publishing_lines(topic, self.messages.transmissions):
+                yield self.resources.image.record(layout.HOST_PUBLICATION_SIZE, {layout.PUBLISHES_ON: line})
 
     def measure(self, executor: str, handle: Handle) -> int:
         """The record of the calls of a handle, from when it was asked for."""
@@ -176,6 +200,10 @@ def add_activities(body: Body, process: Process) -> None:
     UnknownError : something that its time depends on is not specified, or not simulated.
     """
     system = body.context.system
+    host_executor = body.resources.executors.host.executor_of(process.name)
+    if host_executor is not None:
+        add_thread(body, process, host_executor)
+        return
     executor = system.executor_of_task.get(process.name)
     if executor is not None:
         body.iteration = IterationCompiler(body, executor, body.resources.executors)

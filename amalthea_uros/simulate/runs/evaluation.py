@@ -26,6 +26,7 @@ from amalthea_uros.simulate.observations import (
     RunnableObservation,
 )
 from amalthea_uros.simulate.program.build import KernelProgram
+from amalthea_uros.simulate.program.host_system import host_name, thread_names
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.simulate.runs.not_simulated import NotSimulated
@@ -74,6 +75,7 @@ class RunEvaluation:
             left_out=Results(self._left_out(name, reason) for name, reason in program.left_out.items()),
             chains=found,
             executors=executors,
+            host=Results(self._host()),
             losses=Results(self._losses()),
             runnables=runnables,
             labels=Results(self.run.observers.labels()),
@@ -193,6 +195,31 @@ class RunEvaluation:
                 refusals=int(sum(memory[record + layout.REFUSALS] for record in publications)),
                 handles=Results(
                     self._handle(executor, handle, found[executor.name, handle.name]) for handle in executor.handles
+                ),
+            )
+
+    def _host(self) -> Iterator[ExecutorObservation]:
+        """The executors of the host, if it is simulated."""
+        memory, found = self.run.driver.memory, dict(zip(self.program.handles, self.run.handles, strict=True))
+        for executor in self.context.system.host.executors if self.program.host_handles else ():
+            threads = map(self.program.processes.index, thread_names(executor))
+            yield ExecutorObservation(
+                name=executor.name,
+                iterations=sum(self.run.jobs[number].count for number in threads),
+                timeouts=0,
+                handles=Results(
+                    HandleObservation(
+                        name=callback.name,
+                        kind=callback.kind,
+                        runnable=callback.name,
+                        calls=calls.count,
+                        metrics=calls.observations(None),
+                        preemptions=calls.preemptions,
+                        migrations=calls.migrations,
+                        lost=int(memory[self.program.host_handles[callback.name] + layout.LOST_CALLS]),
+                    )
+                    for callback in executor.callbacks
+                    for calls in [found[host_name(executor), callback.name]]
                 ),
             )
 
