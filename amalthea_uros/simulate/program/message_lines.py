@@ -19,15 +19,16 @@ _MEANS = "where only the mean of a time in the agent is known, every message tak
 
 @dataclass(slots=True)
 class Lines:
-    """The records of lines and alarms.
-
-    Attributes
-    ----------
-    alarms : what occurs at planned times
-    """
+    """The records of lines and alarms."""
 
     resources: Resources
-    alarms: list[int] = field(default_factory=list)
+    _alarms: list[int] = field(default_factory=list)
+
+    @property
+    def alarms(self) -> list[int]:
+        """What occurs at planned times: at one instant, messages come before timers of the host are due."""
+        words = self.resources.image.words
+        return sorted(self._alarms, key=lambda alarm: words[alarm + layout.ALARM_KIND] == layout.HOST_TIMERS)
 
     def delay(self, place: str, *spans: Span) -> int:
         """The stream of a delay that consists of several.
@@ -56,5 +57,5 @@ class Lines:
     def alarm(self, kind: int, owner: int, at: int = layout.NEVER) -> int:
         """The record of something that occurs at planned times."""
         fields = {layout.ALARM_AT: at, layout.ALARM_KIND: kind, layout.ALARM_OF: owner}
-        self.alarms.append(self.resources.image.record(layout.ALARM_SIZE, fields))
-        return self.alarms[-1]
+        self._alarms.append(self.resources.image.record(layout.ALARM_SIZE, fields))
+        return self._alarms[-1]
