@@ -152,12 +152,6 @@ class ExecutorRecords:
         fields = {layout.EXECUTION_NUMBER: number, layout.ASKED_AT: thread + layout.CALLED_SINCE}
         return self.resources.image.record(layout.EXECUTION_SIZE, fields)
 
-    def host_publications(self, callback: HostCallback) -> Iterator[int]:
-        """The records of what a callback of the host publishes at its end."""
-        for topic in callback.publishes:
-            for line in self.host.publishing_lines(topic, self.messages.transmissions):
-                yield self.resources.image.record(layout.HOST_PUBLICATION_SIZE, {layout.PUBLISHES_ON: line})
-
     def measure(self, executor: str, handle: Handle) -> int:
         """The record of the calls of a handle, from when it was asked for."""
         number = self.first_number + len(self.measured)

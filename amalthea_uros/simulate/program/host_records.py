@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.host import HostCallback, HostExecutor, HostExecutorKind, RosRelease
@@ -13,10 +14,11 @@ from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
-from amalthea_uros.simulate.program.host_system import sent_by_host, thread_names
+from amalthea_uros.simulate.program.host_system import runnable_name, sent_by_host, thread_names
 from amalthea_uros.simulate.program.message_lines import Lines
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.sampling.words import RandomSource
+from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.units import Time
 
 #: Assumptions.
@@ -45,6 +47,7 @@ class HostRecords:
     handles: dict[str, int] = field(default_factory=dict)
     queues: dict[str, int] = field(default_factory=dict)
     arrivals: list[tuple[int, StimulusOccurrences]] = field(default_factory=list)
+    _stamps: dict[tuple[str, str], list[int]] = field(default_factory=dict)
 
     @property
     def is_simulated(self) -> bool:
@@ -68,6 +71,14 @@ class HostRecords:
         if thread not in self.threads:
             return None
         return next(each for each in self.resources.context.system.host.executors if thread in thread_names(each))
+
+    def callback_at(self, position: ActivityPosition | None) -> HostCallback | None:
+        """The callback of which an activity is the call by a thread."""
+        activity = None if position is None else position.activity
+        if not isinstance(activity, Call):
+            return None
+        host = self.resources.context.system.host
+        return next((each for each in host.callbacks if runnable_name(each) == activity.runnable), None)
 
     # Executors.
 
@@ -166,13 +177,25 @@ class HostRecords:
         topic, agent = plain_topic(transmission.topic), transmission.agent
         return [self._line(each, topic, transmission.link, agent) for each in self._subscribing(topic)]
 
-    def publishing_lines(self, topic: str, transmissions: dict[str, int]) -> list[int]:
-        """The lines from a callback to the subscriptions of a topic, and to controllers."""
-        found = [self._line(each, topic) for each in self._subscribing(topic)]
-        for each in sent_by_host(self.resources.context.system, topic):
-            delay = self.lines.delay(f"from host {each.name}", self._latency(topic), each.agent)
-            found.append(self.lines.line_of(transmissions[each.name], delay, layout.TO_WIRE))
-        return found
+    def publications(self, callback: HostCallback, transmissions: dict[str, int]) -> Iterator[int]:
+        """The records of what a callback publishes at its end: one for each subscription, and each message to a controller."""
+        for topic in callback.publishes:
+            for each in self._subscribing(topic):
+                yield self._publication(callback, each.name, self._line(each, topic))
+            for sent in sent_by_host(self.resources.context.system, topic):
+                delay = self.lines.delay(f"from host {sent.name}", self._latency(topic), sent.agent)
+                yield self._publication(
+                    callback, sent.name, self.lines.line_of(transmissions[sent.name], delay, layout.TO_WIRE)
+                )
+
+    def carry(self, callback: HostCallback, target: str, place: int, index: int) -> None:
+        """Have what a callback publishes to a subscription, or as a message to a controller, carry a value from a place in memory."""
+        self._stamps.setdefault((callback.name, target), []).extend((place, index))
+
+    def _publication(self, callback: HostCallback, target: str, line: int) -> int:
+        first, end = self.resources.image.items(self._stamps.get((callback.name, target), ()))
+        fields = {layout.PUBLISHES_ON: line, layout.PUBLISHED_STAMPS: first, layout.PUBLISHED_STAMPS_END: end}
+        return self.resources.image.record(layout.HOST_PUBLICATION_SIZE, fields)
 
     def is_sent_by_host(self, transmission: Transmission) -> bool:
         """Whether callbacks of the simulated host send a message."""

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from amalthea_uros.perf.activities import Call, Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries
+from amalthea_uros.perf.events import CustomEvent, Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.hardware import Clock, Core, Structure, StructureKind
 from amalthea_uros.perf.host import Host, HostCallback, HostComputer, HostExecutor, HostExecutorKind, HostPolicy
 from amalthea_uros.perf.mapping import TaskAllocation
@@ -50,7 +51,24 @@ def with_host(system: System) -> System:
             runnables=(*software.runnables, *map(_runnable, host.callbacks)),
         ),
         mapping=replace(mapping, tasks=(*mapping.tasks, *(_allocation(executor, name) for executor, name in threads))),
+        events=replace(system.events, events=tuple(_located(event, host) for event in system.events.events)),
     )
+
+
+def _located(event: Event, host: Host) -> Event:
+    """An event that stands for a callback of the host as one of its runnable, if one thread alone calls it."""
+    if not isinstance(event, CustomEvent):
+        return event
+    changes = {"start": RunnableChange.START, "finish": RunnableChange.TERMINATE}
+    for executor in host.executors:
+        threads = thread_names(executor)
+        for callback in executor.callbacks if len(threads) == 1 else ():
+            for moment, change in changes.items():
+                if event.name == f"{callback.name}_{moment}":
+                    return RunnableEvent(
+                        name=event.name, runnable=runnable_name(callback), change=change, process=threads[0], origin=event.origin
+                    )
+    return event
 
 
 def host_name(executor: HostExecutor) -> str:

@@ -11,6 +11,7 @@ from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind
+from amalthea_uros.perf.host import HostCallback
 from amalthea_uros.perf.network import Direction, Losses, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimulus
 from amalthea_uros.perf.system import System
@@ -328,6 +329,18 @@ class MessageRecords:
             self._stamp(self.transmissions[target.name], layout.STAMPS_TO, place, index)
         else:
             self._stamp(self.handles[target], layout.HANDLE_STAMPS, place, index)
+
+    def carry_on_host(self, source: Transmission | HostCallback, target: Transmission | HostCallback, stage: int, place: int) -> None:
+        """Have a message of the host, or to it, carry the value of a stage of a chain to a place in memory."""
+        index, self._carried = self._carried, self._carried + 1
+        if isinstance(source, Transmission):
+            self._stamp(self.transmissions[source.name], layout.STAMPS_FROM, stage + layout.LINK, index)
+        else:
+            self.host.carry(source, target.name, stage + layout.LINK, index)
+        if isinstance(target, Transmission):
+            self._stamp(self.transmissions[target.name], layout.STAMPS_TO, place, index)
+        else:
+            self._stamp(self.host.handles[target.name], layout.HANDLE_STAMPS, place, index)
 
     def keep(self, name: str, stage: int) -> None:
         """Have a message that can be sent again keep the value of a stage of a chain that it has on the wire."""
