@@ -216,7 +216,9 @@ def _executor(executor: ExecutorObservation, is_of_host: bool = False) -> Sectio
     return section(
         f"Executor {executor.name}{where} (from the arrival of a message, or when a timer is due, to the end of the callback)",
         Sentences([f"{counted(executor.iterations, jobs)}", *failed]),
-        table("", ("callback" if is_of_host else "handle", "kind", ">calls", ">min", ">mean", ">max", ">late by", ">lost"), rows),
+        table(
+            "", ("callback" if is_of_host else "handle", "kind", ">calls", ">min", ">mean", ">max", ">late by", ">lost"), rows
+        ),
     )
 
 

@@ -296,7 +296,9 @@ RESTORE_VALUES = (
     62  # if (a message) has been sent before, the values are those that it has kept, and the job goes to (an operation)
 )
 # Of threads of the host.
-CALL_NEXT = 63  # (a thread) takes what it calls next, or waits, and goes to the operation of the callback in a table at (a place)
+CALL_NEXT = (
+    63  # (a thread) takes what it calls next, or waits, and goes to the operation of the callback in a table at (a place)
+)
 HOST_PUBLISH = 64  # publishes on the host with (a publication)
 HAVE_CALLED = 65  # (a thread) has called: its group is free
 ENTER = 70  # (a stage) reads at the start of the job, into its snapshot; if (1), also into its value

@@ -14,6 +14,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
 from amalthea_uros.simulate.program.executors import ExecutorRecords
 from amalthea_uros.simulate.program.flows import FlowRecords
+from amalthea_uros.simulate.program.host_system import depending
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.modes import ModeRecords
@@ -51,6 +52,7 @@ class _ProgramBuilder:
     def __post_init__(self) -> None:
         self.dispatching = Dispatching(self.context)
         self.left_out = self.dispatching.left_out | self.left_out
+        self.left_out |= depending(self.context.system, self.left_out)
         processes = self.dispatching.processes
         self.dispatching.processes = {name: item for name, item in processes.items() if name not in self.left_out}
         watches = Watches(watched(self.context.system, self.options.watched_labels(self.context.system)))

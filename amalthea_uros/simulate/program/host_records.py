@@ -75,7 +75,7 @@ class HostRecords:
     def callback_at(self, position: ActivityPosition | None) -> HostCallback | None:
         """The callback of which an activity is the call by a thread."""
         activity = None if position is None else position.activity
-        if not isinstance(activity, Call):
+        if not isinstance(activity, Call) or not self.is_simulated:
             return None
         host = self.resources.context.system.host
         return next((each for each in host.callbacks if runnable_name(each) == activity.runnable), None)

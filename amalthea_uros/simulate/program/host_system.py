@@ -5,7 +5,7 @@ Whether the host can be simulated is decided for all of it, because its executor
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from amalthea_uros.perf.activities import Call, Demand, Execute
@@ -42,9 +42,7 @@ def with_host(system: System) -> System:
             structures=(*hardware.structures, *map(_structure, host.computers)),
         ),
         os=replace(system.os, systems=(*system.os.systems, *map(_operating_system, host.computers))),
-        stimuli=replace(
-            system.stimuli, stimuli=(*system.stimuli.stimuli, *(InterProcess(name=name) for _, name in threads))
-        ),
+        stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, *(InterProcess(name=name) for _, name in threads))),
         software=replace(
             software,
             tasks=(*software.tasks, *(_task(executor, name) for executor, name in threads)),
@@ -66,7 +64,11 @@ def _located(event: Event, host: Host) -> Event:
             for moment, change in changes.items():
                 if event.name == f"{callback.name}_{moment}":
                     return RunnableEvent(
-                        name=event.name, runnable=runnable_name(callback), change=change, process=threads[0], origin=event.origin
+                        name=event.name,
+                        runnable=runnable_name(callback),
+                        change=change,
+                        process=threads[0],
+                        origin=event.origin,
                     )
     return event
 
@@ -77,7 +79,9 @@ def host_name(executor: HostExecutor) -> str:
 
 
 def thread_names(executor: HostExecutor) -> tuple[str, ...]:
-    """The names of the tasks that stand for the threads of an executor."""
+    """The names of the tasks that stand for the threads of an executor; it has none if it calls nothing."""
+    if not executor.callbacks:
+        return ()
     if executor.kind is not HostExecutorKind.MULTI_THREADED:
         return (host_name(executor),)
     return tuple(f"{host_name(executor)}/{number + 1}" for number in range(executor.threads))
@@ -96,6 +100,17 @@ def sent_to_host(system: System, topic: str) -> list[Transmission]:
 def sent_by_host(system: System, topic: str) -> list[Transmission]:
     """The messages of a topic that the host sends to a controller."""
     return [each for each in _data(system, Direction.TO_CONTROLLER) if plain_topic(each.topic) == topic]
+
+
+def depending(system: System, left_out: Mapping[str, str]) -> dict[str, str]:
+    """The threads of the host that are not simulated either, because they would get too few messages, and why."""
+    host = system.host
+    threads = [name for executor in host.executors for name in thread_names(executor) if name in system.processes]
+    topics = {topic for callback in host.callbacks for topic in (*callback.publishes, callback.topic or "")}
+    is_shared = any(sent_to_host(system, topic) or sent_by_host(system, topic) for topic in topics)
+    origins = [name for name in left_out if name in threads or is_shared]
+    found = {name: f"depends on {origins[0]!r}, which is not simulated" for name in threads} if origins else {}
+    return found | {name: reason for name, reason in left_out.items() if name in found}
 
 
 def _data(system: System, direction: Direction) -> Iterator[Transmission]:

@@ -165,7 +165,9 @@ class MessageRecords:
         self._acknowledge(transmission)
         lines = [
             self.line(
-                relay, self.lines.delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent), layout.TO_WIRE
+                relay,
+                self.lines.delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent),
+                layout.TO_WIRE,
             )
             for relay in self._relays(transmission)
         ]
@@ -273,7 +275,9 @@ class MessageRecords:
         ready = taker(transmission, self.system)
         if transmission.purpose is Purpose.DATA and transmission.direction is Direction.TO_CONTROLLER and ready is not None:
             stimulus = self._published(stimulus.name, ready[1]) or stimulus
-            line = self.line(transmission, self.lines.delay(f"from host {transmission.name}", transmission.agent), layout.TO_WIRE)
+            line = self.line(
+                transmission, self.lines.delay(f"from host {transmission.name}", transmission.agent), layout.TO_WIRE
+            )
         else:
             line = self.line(transmission, self.lines.delay("", _AT_ONCE), layout.TO_WIRE)
         self.brought[stimulus.name] = (line, stimulus)
@@ -330,7 +334,9 @@ class MessageRecords:
         else:
             self._stamp(self.handles[target], layout.HANDLE_STAMPS, place, index)
 
-    def carry_on_host(self, source: Transmission | HostCallback, target: Transmission | HostCallback, stage: int, place: int) -> None:
+    def carry_on_host(
+        self, source: Transmission | HostCallback, target: Transmission | HostCallback, stage: int, place: int
+    ) -> None:
         """Have a message of the host, or to it, carry the value of a stage of a chain to a place in memory."""
         index, self._carried = self._carried, self._carried + 1
         if isinstance(source, Transmission):
