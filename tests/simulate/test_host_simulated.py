@@ -149,7 +149,8 @@ def test_a_host_is_left_out_with_its_reason(old, new, reason):
     assert not simulation.host
     assert any("the host is not simulated" in each and reason in each for each in simulation.assumptions)
     assert 9 <= simulation.executors[0].handles["On_Cmd"].calls <= 11
-    assert "host" in simulation.chains[0].reason and not simulation.chains[0].observations
+    assert "host" in simulation.chains[0].reason
+    assert not simulation.chains[0].observations
 
 
 def test_the_host_is_left_out_with_what_sends_to_it():

@@ -17,6 +17,7 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.activities import compile_activity
 from amalthea_uros.simulate.program.executors import IterationCompiler, add_activities
+from amalthea_uros.simulate.program.host_programs import add_thread
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
@@ -237,7 +238,10 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     for kind, frame in copies:
         if kind is AccessKind.READ:
             body.frame(frame)
-    add_activities(body, process)
+    if (executor := body.resources.executors.messages.host.executor_of(process.name)) is not None:
+        add_thread(body, process, executor)
+    else:
+        add_activities(body, process)
     body.code.mark(body.end)
     for kind, frame in copies:
         if kind is AccessKind.WRITE:

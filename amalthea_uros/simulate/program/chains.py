@@ -133,7 +133,8 @@ class ChainCompiler:
         publisher, subscription = self._on_host(before), self._on_host(stage)
         if publisher is not None or subscription is not None:
             source, target = publisher or sent, subscription or transmissions.get(stage.process.name)
-            assert source is not None and target is not None
+            assert source is not None
+            assert target is not None
             found = self.resources.image.record(layout.STAGE_SIZE, {layout.LINK: -1})
             messages.carry_on_host(source, target, record, found + layout.LINK)
             return found
@@ -151,7 +152,7 @@ class ChainCompiler:
 
     def _on_host(self, stage: Stage) -> HostCallback | None:
         """The callback of the host in which a stage is."""
-        host = self.resources.executors.host
+        host = self.resources.executors.messages.host
         return host.callback_at(stage.positions[-1]) if stage.positions else None
 
     def _positions(self, stage: Stage) -> list[ActivityPosition]:

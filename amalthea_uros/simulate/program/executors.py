@@ -14,14 +14,10 @@ from amalthea_uros.executors.semantics.steps import IterationStep, iterations_na
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, Publication, ThreadPlace, TriggerKind
-from amalthea_uros.perf.host import HostCallback, HostExecutor
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
 from amalthea_uros.simulate.program.flows import FlowRecords
-from amalthea_uros.simulate.program.host_programs import add_thread
-from amalthea_uros.simulate.program.host_records import HostRecords
-from amalthea_uros.simulate.program.host_system import host_name
 from amalthea_uros.simulate.program.image import JumpLabel
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.resources import Resources
@@ -138,20 +134,6 @@ class ExecutorRecords:
             records[executor].append(record)
         return records
 
-    @property
-    def host(self) -> HostRecords:
-        """The executors of the host."""
-        return self.messages.host
-
-    def measure_host(self, executor: HostExecutor, callback: HostCallback, thread: int) -> int:
-        """The record of the calls of a callback of the host by a thread, from when they were released."""
-        key = (host_name(executor), callback.name)
-        if key not in self.measured:
-            self.measured.append(key)
-        number = self.first_number + self.measured.index(key)
-        fields = {layout.EXECUTION_NUMBER: number, layout.ASKED_AT: thread + layout.CALLED_SINCE}
-        return self.resources.image.record(layout.EXECUTION_SIZE, fields)
-
     def measure(self, executor: str, handle: Handle) -> int:
         """The record of the calls of a handle, from when it was asked for."""
         number = self.first_number + len(self.measured)
@@ -194,10 +176,6 @@ def add_activities(body: Body, process: Process) -> None:
     UnknownError : something that its time depends on is not specified, or not simulated.
     """
     system = body.context.system
-    host_executor = body.resources.executors.host.executor_of(process.name)
-    if host_executor is not None:
-        add_thread(body, process, host_executor)
-        return
     executor = system.executor_of_task.get(process.name)
     if executor is not None:
         body.iteration = IterationCompiler(body, executor, body.resources.executors)

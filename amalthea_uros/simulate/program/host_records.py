@@ -24,6 +24,8 @@ from amalthea_uros.units import Time
 #: Assumptions.
 _ORDER = "where addresses in memory decide the order of a ready set, it is one at random for the whole run"
 _REGISTERED = "where addresses in memory decide the order of a ready set, it is that of the description"
+_THREADS = "host: only the described threads run on its computers, and deciding and taking messages take no time of their own"
+_TOPICS = "host: latencies of topics are uniform between their limits, and keep the order of messages"
 _RATES = "messages of the host that nothing described publishes come at the stated rate"
 
 
@@ -60,6 +62,7 @@ class HostRecords:
         """Place the records of executors and of the messages that come to them from outside."""
         if not self.is_simulated:
             return
+        self.resources.context.notes.assume(_THREADS)
         for executor in self.resources.context.system.host.executors:
             self._place(executor)
         for executor in self.resources.context.system.host.executors:
@@ -210,7 +213,10 @@ class HostRecords:
         return next(each.latency for each in self.resources.context.system.host.topics if each.name == topic)
 
     def _line(self, callback: HostCallback, topic: str, *before: Span) -> int:
-        delay = self.lines.delay(f"topic {topic} to {callback.name}", *before, self._latency(topic))
+        latency = self._latency(topic)
+        if latency.most != latency.least:
+            self.resources.context.notes.assume(_TOPICS)
+        delay = self.lines.delay(f"topic {topic} to {callback.name}", *before, latency)
         return self.lines.line_of(self.queues[callback.name], delay, layout.TO_HOST_QUEUE)
 
     def _bring(self, callback: HostCallback) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from fractions import Fraction
 
 from amalthea_uros.perf.activities import Call, Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries
@@ -23,7 +24,7 @@ from amalthea_uros.perf.system import System
 #: With what the names begin that stand for the host; other names cannot contain it.
 _PREFIX = "host/"
 #: A tick is a picosecond, so that execution times of the host are exact.
-_FREQUENCY = 10**12
+_FREQUENCY = Fraction(10**12)
 _CLOCK = f"{_PREFIX}clock"
 
 
@@ -109,7 +110,7 @@ def depending(system: System, left_out: Mapping[str, str]) -> dict[str, str]:
     topics = {topic for callback in host.callbacks for topic in (*callback.publishes, callback.topic or "")}
     is_shared = any(sent_to_host(system, topic) or sent_by_host(system, topic) for topic in topics)
     origins = [name for name in left_out if name in threads or is_shared]
-    found = {name: f"depends on {origins[0]!r}, which is not simulated" for name in threads} if origins else {}
+    found = dict.fromkeys(threads, f"depends on {origins[0]!r}, which is not simulated") if origins else {}
     return found | {name: reason for name, reason in left_out.items() if name in found}
 
 
