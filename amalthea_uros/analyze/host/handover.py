@@ -83,12 +83,10 @@ def _changes(stated: System, solution: Solution) -> list[tuple[Handle, Handle]]:
     return [(one, other) for one, other in pairs if (one.interval, one.jitter) != (other.interval, other.jitter)]
 
 
-def _change(stated: Handle, found: Handle) -> str:
-    message = f"the host sends the messages of {stated.name!r} every {time_text(found.interval or 0)}"
-    if stated.interval == found.interval:
-        return (
-            f"{message} with a jitter of up to {time_text(found.jitter)}, which is used instead of what the subscription states"
-        )
+def _change(stated: Handle, analysed: Handle) -> str:
+    message = f"the host sends the messages of {stated.name!r} every {time_text(analysed.interval or 0)}"
+    if stated.interval == analysed.interval:
+        return f"{message} with a jitter of up to {time_text(analysed.jitter)}, which is used instead of what the subscription states"
     return f"{message}, but the subscription states {time_text(stated.interval or 0)}, so that what depends on them is unknown"
 
 

@@ -38,7 +38,7 @@ def call_next(m: Memory, core: int, process: int, thread: int) -> int:
 
 
 def have_called(m: Memory, thread: int) -> None:
-    """The group of a callback is free again, so that others of it can be called."""
+    """The group of a callback is free again, so that its other members can be called."""
     group = m[m[thread + CALLED_HANDLE] + ITS_GROUP]
     if group:
         m[group] = 0

@@ -1,4 +1,4 @@
-"""What occurs at an instant without a job: stimuli that come from outside, and alarms."""
+"""Occurrences without a job at an instant: stimuli that come from outside, and alarms."""
 
 from __future__ import annotations
 

@@ -135,9 +135,9 @@ class ChainCompiler:
             source, target = publisher or sent, subscription or transmissions.get(stage.process.name)
             assert source is not None
             assert target is not None
-            found = self.resources.image.record(layout.STAGE_SIZE, {layout.LINK: -1})
-            messages.carry_on_host(source, target, record, found + layout.LINK)
-            return found
+            received = self.resources.image.record(layout.STAGE_SIZE, {layout.LINK: -1})
+            messages.carry_on_host(source, target, record, received + layout.LINK)
+            return received
         if sent is None or sent.name == stage.process.name:
             return record
         taken_by: Transmission | tuple[str, str] | None = transmissions.get(stage.process.name)

@@ -110,8 +110,8 @@ def depending(system: System, left_out: Mapping[str, str]) -> dict[str, str]:
     topics = {topic for callback in host.callbacks for topic in (*callback.publishes, callback.topic or "")}
     is_shared = any(sent_to_host(system, topic) or sent_by_host(system, topic) for topic in topics)
     origins = [name for name in left_out if name in threads or is_shared]
-    found = dict.fromkeys(threads, f"depends on {origins[0]!r}, which is not simulated") if origins else {}
-    return found | {name: reason for name, reason in left_out.items() if name in found}
+    reasons = dict.fromkeys(threads, f"depends on {origins[0]!r}, which is not simulated") if origins else {}
+    return reasons | {name: reason for name, reason in left_out.items() if name in reasons}
 
 
 def _data(system: System, direction: Direction) -> Iterator[Transmission]:

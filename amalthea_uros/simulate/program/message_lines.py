@@ -26,7 +26,7 @@ class Lines:
 
     @property
     def alarms(self) -> list[int]:
-        """What occurs at planned times: at one instant, messages come before timers of the host are due."""
+        """Planned occurrences: at one instant, messages come before timers of the host are due."""
         words = self.resources.image.words
         return sorted(self._alarms, key=lambda alarm: words[alarm + layout.ALARM_KIND] == layout.HOST_TIMERS)
 

@@ -200,7 +200,7 @@ class RunEvaluation:
 
     def _host(self) -> Iterator[ExecutorObservation]:
         """The executors of the host, if it is simulated."""
-        memory, found = self.run.driver.memory, dict(zip(self.program.handles, self.run.handles, strict=True))
+        memory, calls_of = self.run.driver.memory, dict(zip(self.program.handles, self.run.handles, strict=True))
         for executor in self.context.system.host.executors if self.program.host_handles else ():
             threads = map(self.program.processes.index, thread_names(executor))
             yield ExecutorObservation(
@@ -219,7 +219,7 @@ class RunEvaluation:
                         lost=int(memory[self.program.host_handles[callback.name] + layout.LOST_CALLS]),
                     )
                     for callback in executor.callbacks
-                    for calls in [found[host_name(executor), callback.name]]
+                    for calls in [calls_of[host_name(executor), callback.name]]
                 ),
             )
 
