@@ -108,6 +108,7 @@ class Simulation(Shown):
         """What makes the observations incomplete: processes that were left out, a run that ended early or in which nothing happened."""
         found = tuple(finding.message for finding in self.findings if finding.severity is Severity.ERROR)
         is_idle = not any(process.jobs or process.unfinished for process in self.processes)
+        is_idle = is_idle and not any(executor.iterations for executor in self.host)
         return (IDLE, *found) if is_idle else found
 
     @property

@@ -72,7 +72,9 @@ class RunEvaluation:
             mode=self.run.options.mode,
             cores=Results(self._core(name, record) for name, record in program.cores.items()),
             processes=processes,
-            left_out=Results(self._left_out(name, reason) for name, reason in program.left_out.items()),
+            left_out=Results(
+                self._left_out(name, reason) for name, reason in program.left_out.items() if name not in self._threads_of_host
+            ),
             chains=found,
             executors=executors,
             host=Results(self._host()),
@@ -108,7 +110,13 @@ class RunEvaluation:
 
     def _processes(self) -> Iterator[ProcessObservation]:
         for name, found in zip(self.program.processes, self.run.jobs, strict=True):
-            yield self._process(name, found)
+            if name not in self._threads_of_host:
+                yield self._process(name, found)
+
+    @property
+    def _threads_of_host(self) -> frozenset[str]:
+        """The tasks that stand for threads of the host, of which the executors of the host are observed instead."""
+        return frozenset(name for executor in self.context.system.host.executors for name in thread_names(executor))
 
     def _deadline(self, name: str) -> Deadline | None:
         deadline = deadline_of(name, self.context)
