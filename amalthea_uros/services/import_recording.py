@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from amalthea_uros._internal.files import is_directory
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.services.files import save_new
 from amalthea_uros.services.import_code import ImportResult, count_gaps
@@ -14,7 +15,7 @@ def is_recording(path: Path) -> bool:
     from amalthea_uros.trace.ctf.metadata import is_metadata
     from amalthea_uros.trace.files import METADATA, trace_folders
 
-    return path.is_dir() and any(is_metadata(folder / METADATA) for folder in trace_folders(path))
+    return is_directory(path) and any(is_metadata(folder / METADATA) for folder in trace_folders(path))
 
 
 def import_recording(recording: StrPath, target: StrPath | None = None, *, force: bool = False) -> ImportResult:
