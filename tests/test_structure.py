@@ -41,7 +41,7 @@ LINES = {
     "perf": 1692,
     "platforms": 0,
     "report": 8293,
-    "services": 2401,
+    "services": 2402,
     "simulate": 8570,
     "source": 2715,
     "spec": 2498,
