@@ -183,8 +183,8 @@ def test_all_of_it_is_printed(opened, tmp_path):
 def verdict_page(request, page, tmp_path_factory):
     if request.param == "met":
         return page
-    # In each millisecond, Control_Function takes more than that; or so much that it may be late when a message arrives.
-    time = {"missed": "1990us", "unknown": "980us"}[request.param]
+    # In each millisecond, Control_Function takes more than the executor leaves; or so much that it may be late when a message arrives.
+    time = {"missed": "999us", "unknown": "980us"}[request.param]
     path = tmp_path_factory.mktemp("verdict") / "report.html"
     report(SAMPLE, duration="20 ms", changes={"Control_Function.execution_time": time}).save(path)
     return path
