@@ -231,7 +231,8 @@ class EventRows:
         if self._origin is None or (lost == NO_NOTE and self._gap is not None and self._gap is self._last):
             return
         recorder = self.index.index(EntityKind.SCHEDULER, "recorder")
-        self._gap = self.add(EventKind.GAP, recorder, 0, recorder, 0, lost)
+        # A damaged file can claim to have lost any number.
+        self._gap = self.add(EventKind.GAP, recorder, 0, recorder, 0, min(lost, MAX))
 
     def change_kind(self, row: list[int], kind: EventKind) -> None:
         """Let an event that has not been taken be one of another kind."""

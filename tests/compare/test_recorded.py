@@ -8,7 +8,7 @@ import pytest
 import robot_recording
 from command import amuros as command
 from ctf_traces import ros2_writer
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support import ROOT
 
@@ -297,6 +297,15 @@ def test_a_folder_with_another_file_called_metadata_is_source_code(tmp_path):
 
 
 @settings(max_examples=25)
+# More events lost than any number in a table.
+@example(
+    places=[
+        (0.192367216161548, b"\x12(\xa5\x1f\x02|$\x80"),
+        (0.8302256189040671, b"\xec\x9a"),
+        (0.12974074276958228, b"\xc6\xc4\xf0\x8f\x0f\xd5"),
+    ],
+    in_metadata=False,
+)
 @given(st.lists(st.tuples(st.floats(0, 1), st.binary(max_size=8)), min_size=1, max_size=4), st.booleans())
 def test_any_damage_gives_a_description_or_an_error(tmp_path_factory, places, in_metadata):
     folder = tmp_path_factory.mktemp("damaged")
