@@ -90,7 +90,7 @@ def diff(old: Model | StrPath, new: Model | StrPath, *, with_impact: bool = Fals
 
 
 def _described(old: Model | StrPath, new: Model | StrPath) -> tuple[Difference, ...]:
-    """The differences of two descriptions; none of others."""
+    """The differences of two descriptions; empty if one of the files is a model."""
     sides = [Path(one) for one in (old, new) if not isinstance(one, Model) and is_description(one)]
     if len(sides) < 2:
         return ()

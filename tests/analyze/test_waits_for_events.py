@@ -1,4 +1,4 @@
-"""Waits for events: bounds computed by hand, waits that may never end, and random systems that are played through."""
+"""Waits for events: bounds computed by hand, waits that may never end, and random systems against a simulator of the tests."""
 
 from random import Random
 
@@ -173,7 +173,7 @@ def systems(draw):
 
 
 def to_perf(task):
-    """A task that is played, for the product."""
+    """The task of the product for one of the tests' simulator."""
     made = []
     for step in task.body:
         match step:

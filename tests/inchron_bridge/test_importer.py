@@ -8,7 +8,7 @@ from iprx_facts import VECTORS, differences, facts_of
 
 from amalthea_uros.services.export import export
 
-#: Where another result is intended: paths of facts, with the reason. What the importer drops is in none of its projects.
+#: Facts that intentionally differ from those of the importer, with the reason; among them what the importer drops.
 INTENDED = {
     r"/comment$": "keeps what a project has no place for",
     r"/memories\[.*\]/clock$|/interconnects\[CH0\]/clock$": "the metamodel demands a clock, which the importer leaves out",

@@ -124,12 +124,12 @@ def read_recording(path: Path) -> RecordedHost:
     computers = [name for name in reader.computers if name]
     if len(computers) > 1:
         names = ", ".join(map(repr, computers))
-        raise InvalidArgumentError(f"{path.name!r} has recordings of several computers, {names}; import each of them alone")
+        raise InvalidArgumentError(f"{str(path)!r} has recordings of several computers, {names}; import each of them alone")
     ros2 = reader.ros2
     callbacks = () if ros2 is None else ros2.callbacks()
     if ros2 is None or not any(each.threads for each in callbacks):
         raise InvalidArgumentError(
-            f"{path.name!r} has no callbacks of ROS 2; record the events 'ros2:*' with 'ros2 trace' before the nodes are started"
+            f"{str(path)!r} has no callbacks of ROS 2; record the events 'ros2:*' with 'ros2 trace' before the nodes are started"
         )
     scheduled = {} if reader.scheduler is None else reader.scheduler.threads
     recorded = [_measured(each, measurement) for each in callbacks]

@@ -142,7 +142,7 @@ class _Graph:
         return [entry for entry in result if entry.kind != "CallSequence" or entry["calls"]]
 
     def group(self, group: perf.Group) -> list[ProjectObject]:
-        """A sequence with the name of the group; others within it stand beside it, as sequences do not contain any."""
+        """A sequence with the name of the group, and one beside it for each group within it, as sequences cannot be nested."""
         context = self.context
         if not group.ordered:
             context.lost(group, "a group without an order", "its activities are in the order in which they are stated")

@@ -17,7 +17,7 @@ from amalthea_uros.simulate.kernel.wires import delay, lacks_delay
 
 
 def call_next(m: Memory, core: int, process: int, thread: int) -> int:
-    """Take what a thread calls next, or wait; the result is 0, 1 if it waits or lets others go first, or a reason to stop plus 1."""
+    """Take what a thread calls next, or wait: 0, or 1 if it waits or yields to other threads, or a reason to stop plus 1."""
     code = occur(m)
     if code:
         return code + 1
