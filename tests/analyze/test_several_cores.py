@@ -1,4 +1,4 @@
-"""Tasks that any core of their scheduler executes: a bound computed by hand, what is refused, and random systems against a simulator."""
+"""Tasks that any core of their scheduler executes: a bound computed by hand, what is refused, and random systems that are simulated."""
 
 from dataclasses import replace
 from itertools import product
