@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import click
 
 from amalthea_uros._internal.csv_cells import RAW_NAMES
-from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, POSITIVE, Parsed, assignment
+from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, POSITIVE, Parsed, PositiveNumber, assignment
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, SWEEP_EXAMPLE, parse_change, parse_sweep
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.perf.activities import Communication
@@ -156,7 +156,7 @@ _SETTINGS = all_of(
         ),
         click.option(
             "--quantile",
-            type=click.FloatRange(min=0, min_open=True, max=0.5, max_open=True),
+            type=PositiveNumber(below=0.5),
             help="Probability beyond which values of normal distributions without bounds are taken as impossible, e.g. 1e-9.",
         ),
         click.option(

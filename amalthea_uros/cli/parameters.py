@@ -66,10 +66,10 @@ def output_path(text: str) -> Path:
 
 
 class PositiveNumber(click.FloatRange):
-    """A number above zero; click itself takes `nan` and `inf` for numbers."""
+    """A number above zero, and below a limit if there is one; click itself takes `nan` and `inf` for numbers."""
 
-    def __init__(self) -> None:
-        super().__init__(min=0, min_open=True)
+    def __init__(self, below: float | None = None) -> None:
+        super().__init__(min=0, min_open=True, max=below, max_open=below is not None)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Parse one value."""

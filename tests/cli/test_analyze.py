@@ -121,6 +121,8 @@ def test_another_clock(tmp_path):
         (["--scale", "0"], "0"),
         (["--scale", "nan"], "'nan' is not a finite number"),
         (["--scale", "1e400"], "'1e400' is not a finite number"),
+        (["--quantile", "nan"], "'nan' is not a finite number"),
+        (["--quantile", "0.5"], "0<x<0.5"),
         (["--mode-label", "speed"], "not of the form LABEL=VALUE"),
         (["--mode-label", "speed=1"], "unknown mode label 'speed'; the model has no mode label"),
         (["--memory", "cached"], "'cached'"),
