@@ -50,7 +50,10 @@ def refusal(
         return InvalidArgumentError(f"{unstated}; {known}")
     names = dict.fromkeys((*(name for key in keys for name in key.names[:-1]), *_objects(system)))
     holders = [short_name(key, keys) for key in keys if key.path[-1] == change.key]
-    advice = did_you_mean(change.object, names) or (f"{change.key!r} is a key of {listed(holders)}" if holders else reason)
+    advice = did_you_mean(change.object, names) or (f"{change.key!r} is a key of {listed(holders)}" if holders else "")
+    if change.object and not advice:
+        return reason
+    advice = advice or str(reason)
     return InvalidArgumentError(f"unknown object {change.object!r}; {advice}" if change.object else f"{unstated}; {advice}")
 
 
