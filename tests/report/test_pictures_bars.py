@@ -174,3 +174,12 @@ def test_pictures_in_one_page_have_ids_of_their_own(analysis):
     assert used == {"url(#loads-unknown)"}
     assert any(name in content for content in contents(picture))
     assert "<style>" not in picture
+
+
+def test_a_worst_case_of_which_little_is_certain_is_shown_whole(analysis):
+    """An executor in a loop may iterate much more often than it must."""
+    picture = loads_of(analysis, core("rare", "1/100", "1/100", "1/50", "1/50"), core("often", "1/100", None, "1/10", "1/100"))
+    assert "the highest load is that of often: worst 10" in "".join(parsed(picture).itertext())
+    assert max(right - left for left, right, _ in bars(picture, "often")) == pytest.approx(
+        5 * max(right - left for left, right, _ in bars(picture, "rare")), rel=0.05
+    )

@@ -74,12 +74,12 @@ def draw_loads(analysis: Analysis) -> Markup:
 
 
 def _shown(cores: Sequence[ProcessorResult]) -> list[ProcessorResult]:
-    kept = {core.name for core in sorted(cores, key=lambda core: core.at_least, reverse=True)[:MOST_CORES]}
+    kept = {core.name for core in sorted(cores, key=_greatest, reverse=True)[:MOST_CORES]}
     return [core for core in cores if core.name in kept]
 
 
 def _scale(cores: Sequence[ProcessorResult]) -> _LoadScale:
-    highest = max((float(100 * core.at_least) for core in cores), default=0)
+    highest = max((float(100 * _greatest(core)) for core in cores), default=0)
     step = nice_step(_SHORTEST, _PARTS)
     end = min(max(_SHORTEST, -(-round(highest + 1) // step) * step), _LONGEST)
     widest = max((text_width(core.name, TEXT_SIZE) for core in cores), default=0)
@@ -94,9 +94,9 @@ def _row(core: ProcessorResult, top: float, scale: _LoadScale) -> Markup:
 
 def _bars(core: ProcessorResult, top: float, scale: _LoadScale) -> Markup:
     """The worst case pale, the best case full, a line at the mean, and what is unknown hatched."""
-    end = scale.x(core.at_least)
+    end = scale.x(_greatest(core))
     parts = []
-    if core.at_least:
+    if _greatest(core):
         look = "late" if core.is_overloaded else "c0"
         parts.append(rect_at(look, scale.left, top, max(end - scale.left, _LOWEST), _BAR, fill_opacity=0.3))
     if core.best:
@@ -124,7 +124,7 @@ def _grid(scale: _LoadScale, bottom: float) -> Iterator[Markup]:
 
 def _legend(cores: Sequence[ProcessorResult]) -> list[Entry]:
     return [
-        (any(core.at_least for core in cores), swatch("c0", fill_opacity=0.3), "worst case"),
+        (any(_greatest(core) for core in cores), swatch("c0", fill_opacity=0.3), "worst case"),
         (any(core.best for core in cores), swatch("c0", 6), "best case"),
         (any(core.mean for core in cores), path_of("line", "M0 -7V7"), "mean"),
         (any(core.worst is None for core in cores), unknown(-9, -6, 18, 12), "unknown part of the worst case"),
@@ -137,11 +137,16 @@ def _notes(cores: Sequence[ProcessorResult]) -> list[str]:
     notes = []
     if len(cores) > MOST_CORES:
         notes.append(f"{counted(len(cores) - MOST_CORES, 'core')} with lower loads not shown.")
-    if any(100 * core.at_least > _LONGEST for core in cores):
+    if any(100 * _greatest(core) > _LONGEST for core in cores):
         notes.append(f"Bars end at {_LONGEST} %; the numbers are complete.")
     return notes
 
 
 def _subtitle(cores: Sequence[ProcessorResult]) -> str:
-    highest = max(cores, key=lambda core: core.at_least)
+    highest = max(cores, key=_greatest)
     return f"{counted(len(cores), 'core')}, the highest load is that of {highest.name}: {_values(highest)}"
+
+
+def _greatest(core: ProcessorResult) -> Fraction:
+    """The worst-case load, or the part of it that is certain if the rest is unknown."""
+    return core.at_least if core.worst is None else core.worst
