@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.bridge.basics.context import Extracting
+from amalthea_uros.bridge.basics.middleware_flaws import with_unknown_activation
 from amalthea_uros.bridge.tables.constraints import extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
@@ -19,7 +20,6 @@ from amalthea_uros.bridge.tables.middleware import (
     extract_executors,
     extract_host,
     extract_network,
-    with_unknown_activation,
 )
 from amalthea_uros.bridge.tables.objects import OBJECTS
 from amalthea_uros.bridge.tables.os import extract_overhead, extract_system

@@ -1,0 +1,101 @@
+"""What files say of executors, wires and the host beside their own classes: what of it cannot be used, and what is unknown then."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import replace
+from typing import Any
+
+from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.host import Host, HostExecutor, HostPolicy
+from amalthea_uros.perf.network import BILLION, MOST_LOST, Losses, Network, Recovery, Transmission
+from amalthea_uros.perf.stimuli import Custom
+from amalthea_uros.perf.system import System
+
+
+def flaw_of_executor(executor: Executor, system: System) -> str | None:
+    """Why an executor of a file does not belong to a system; None if it does."""
+    called = (handle.runnable for handle in executor.handles)
+    takes = (handle.take for handle in executor.handles if handle.take is not None)
+    busy = () if executor.busy_wait is None else (executor.busy_wait,)
+    return _missing("runnable", (executor.spin, *called, *takes, *busy), system.runnables)
+
+
+def flaw_of_network(network: Network, system: System) -> str | None:
+    """Why the network of a file does not belong to a system, or has losses that no description can state; None if it does."""
+    cores = (core for wire in network.wires for core in wire.cores)
+    flaws = [
+        _missing("core", cores, system.cores),
+        _missing("runnable", (each.runnable for each in network.waits), system.runnables),
+        *(_flaw_of_losses(losses) for wire in network.wires for losses in wire.losses),
+        *(_flaw_of_recovery(wire.recovery) for wire in network.wires if wire.recovery is not None),
+    ]
+    return next(filter(None, flaws), None)
+
+
+def _flaw_of_losses(losses: Losses) -> str | None:
+    """What no description can state: it would lose less than it says, or make a simulation fail."""
+    is_counted = 1 <= losses.count <= MOST_LOST and 0 < losses.window < 2**63 and not losses.per_billion
+    is_share = not losses.count and not losses.window and 0 < losses.per_billion < BILLION
+    if not losses.directions or len(set(losses.directions)) < len(losses.directions):
+        return "losses need one direction or both"
+    return None if is_counted or is_share else "losses are neither a number in a time nor a probability"
+
+
+def _flaw_of_recovery(recovery: Recovery) -> str | None:
+    """A side that asks again after no time would never do anything else."""
+    if not (0 < recovery.asks_after < 2**63 and 0 < recovery.agent_asks_every < 2**63):
+        return "the times until missing acknowledgements are asked for are not above zero"
+    parts = recovery.sent_parts, recovery.received_parts, recovery.agent_sent_parts
+    return "a number of parts is not above zero" if any(each is not None and each < 1 for each in parts) else None
+
+
+def flaw_of_transmission(transmission: Transmission, network: Network, system: System) -> str | None:
+    """Why a transmission of a file does not belong to a system; None if it does."""
+    wires = {wire.name for wire in network.wires}
+    return _missing("wire", [transmission.wire], wires) or _missing("process", transmission.processes, system.processes)
+
+
+def _missing(kind: str, names: Iterable[str], known: Any) -> str | None:
+    return next((f"undefined {kind} {name!r}" for name in names if name not in known), None)
+
+
+def flaw_of_host(host: Host) -> str | None:
+    """What no description of a host can state, and would make bounds too low or an analysis fail; None if there is nothing."""
+    computers = {computer.name for computer in host.computers}
+    names = [callback.name for callback in host.callbacks]
+    if len(set(names)) < len(names):
+        return "two callbacks of the host have one name"
+    if any(computer.cores < 1 for computer in host.computers):
+        return "a computer has no core"
+    flaws = [
+        _missing("computer", (executor.computer for executor in host.executors), computers),
+        *map(_flaw_of_host_executor, host.executors),
+    ]
+    return next(filter(None, flaws), None)
+
+
+def _flaw_of_host_executor(executor: HostExecutor) -> str | None:
+    thread = executor.thread
+    if thread.policy is HostPolicy.DEADLINE and not 0 < thread.budget <= thread.period:
+        return f"the budget of {executor.name!r} is not within its period"
+    if executor.threads < 1:
+        return f"{executor.name!r} has no thread"
+    for callback in executor.callbacks:
+        spans = callback.execution.least < 0 or (callback.execution.most or 1) < max(1, callback.execution.least)
+        if spans or (callback.period is None) is (callback.topic is None) or (callback.period or 1) < 1 or callback.depth < 1:
+            return f"the callback {callback.name!r} is not valid"
+    return None
+
+
+def with_unknown_activation(system: System, names: Collection[str]) -> System:
+    """The system, in which it is not known what activates some tasks: what they mean was said in a property that cannot be read."""
+    unknown = Custom(name="unknown executor or transmission", description="a property of its task cannot be read")
+    tasks = [
+        replace(task, stimuli=(*task.stimuli, unknown.name)) if task.name in names else task for task in system.software.tasks
+    ]
+    return replace(
+        system,
+        stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, unknown)),
+        software=replace(system.software, tasks=tuple(tasks)),
+    )
