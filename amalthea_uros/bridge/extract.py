@@ -12,7 +12,6 @@ from typing import Any, TypeVar
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.bridge.basics.context import Extracting
-from amalthea_uros.bridge.basics.middleware_flaws import with_unknown_activation
 from amalthea_uros.bridge.tables.constraints import extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor
 from amalthea_uros.bridge.tables.mapping import extract_mapping
@@ -20,6 +19,7 @@ from amalthea_uros.bridge.tables.middleware import (
     extract_executors,
     extract_host,
     extract_network,
+    without_unreadable,
 )
 from amalthea_uros.bridge.tables.objects import OBJECTS
 from amalthea_uros.bridge.tables.os import extract_overhead, extract_system
@@ -118,9 +118,7 @@ class _Extract:
             network=extract_network(self.sub_models(am.SWModel), tasks, system, context),
             host=extract_host(self.sub_models(am.SWModel), context),
         )
-        is_network_lost = any(model in context.without_property for model in self.sub_models(am.SWModel))
-        unknown = {context.names[task] for task in tasks if is_network_lost or task in context.without_property}
-        return with_unknown_activation(system, unknown) if unknown else system
+        return without_unreadable(system, tasks, self.sub_models(am.SWModel), context)
 
     def hardware(self) -> Hardware:
         """The hardware of all files."""

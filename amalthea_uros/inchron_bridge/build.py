@@ -23,6 +23,7 @@ from amalthea_uros.inchron_bridge.tables.requirements import build_requirements
 from amalthea_uros.inchron_bridge.tables.software import assign_owners, build_graphs, build_software
 from amalthea_uros.inchron_bridge.tables.stimuli import build_stimuli
 from amalthea_uros.perf.hardware import StructureKind
+from amalthea_uros.perf.host import Host
 from amalthea_uros.perf.network import Network
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
@@ -109,7 +110,7 @@ def _keep_lists(context: Exporting) -> None:
 
 
 def _keep_middleware(context: Exporting) -> None:
-    """Executors and the network: a project has no classes for them."""
+    """Executors, the network and the host: a project has no classes for them."""
     system = context.system
     for executor in system.executors:
         keep_whole(context.need("Process", executor.task, executor.name), "executor", executor)
@@ -118,3 +119,7 @@ def _keep_middleware(context: Exporting) -> None:
     network = replace(system.network, transmissions=())
     if network != Network():
         keep_whole(context.model, "network", network)
+    if system.host != Host():
+        for each in system.host.executors:
+            context.lost(each, "an executor of ROS 2 on the host")
+        keep_whole(context.model, "host", system.host)

@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from amalthea_uros.bridge.basics.middleware_flaws import (
+    flaw_of_executor,
+    flaw_of_host,
+    flaw_of_network,
+    flaw_of_transmission,
+    with_unknown_activation,
+)
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron.project import Project
@@ -27,6 +34,7 @@ from amalthea_uros.inchron_bridge.tables.software_back import (
 from amalthea_uros.inchron_bridge.tables.stimuli_back import StimuliReader
 from amalthea_uros.perf.activities import Incomplete
 from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.host import Host
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.network import Network, Transmission
 from amalthea_uros.perf.os import OperatingSystem, Os, Overhead, Policy, Scheduler
@@ -93,16 +101,24 @@ def _system(context: Importing, model: ProjectObject) -> System:
 
 
 def _with_middleware(system: System, context: Importing, model: ProjectObject) -> System:
-    """The system with the executors and the network that comments describe."""
+    """The system with the executors, the network and the host that comments describe; without one of these, their tasks are unknown."""
+    parts = {"executor", "transmission"}
+    keeping = [each for each in processes_of(model) if parts & context.noted(each).keys() or each in context.damaged]
+    network = context.checked(model, "network", Network, lambda each: flaw_of_network(each, system)) or Network()
+    host = context.checked(model, "host", Host, flaw_of_host) or Host()
     executors, transmissions = [], []
-    for process in processes_of(model):
+    for process in keeping:
         origin = context.location(process)
-        executor = context.whole(process, "executor", (Executor,), sealed=False, origin=origin)
-        transmission = context.whole(process, "transmission", (Transmission,), sealed=False, origin=origin)
+        executor = context.checked(process, "executor", Executor, lambda each: flaw_of_executor(each, system), origin=origin)
+        transmission = context.checked(
+            process, "transmission", Transmission, lambda each: flaw_of_transmission(each, network, system), origin=origin
+        )
         executors += [executor] if executor is not None else []
         transmissions += [transmission] if transmission is not None else []
-    network = context.whole(model, "network", (Network,), sealed=False) or Network()
-    return replace(system, executors=tuple(executors), network=replace(network, transmissions=tuple(transmissions)))
+    found = replace(system, executors=tuple(executors), network=replace(network, transmissions=tuple(transmissions)), host=host)
+    unknown = keeping if model in context.damaged else [each for each in keeping if each in context.damaged]
+    names = {name for each in unknown if (name := context.name_of("Process", each)) is not None}
+    return with_unknown_activation(found, names) if names else found
 
 
 def _with_unknown(system: System, context: Importing, items: list[ProjectObject]) -> System:

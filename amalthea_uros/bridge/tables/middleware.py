@@ -14,7 +14,13 @@ from typing import Any, TypeVar
 from amalthea_uros.bridge.basics.context import Building, Extracting
 from amalthea_uros.bridge.basics.json_text import from_text, to_text
 from amalthea_uros.bridge.basics.kinds import ObjectKind
-from amalthea_uros.bridge.basics.middleware_flaws import flaw_of_executor, flaw_of_host, flaw_of_network, flaw_of_transmission
+from amalthea_uros.bridge.basics.middleware_flaws import (
+    flaw_of_executor,
+    flaw_of_host,
+    flaw_of_network,
+    flaw_of_transmission,
+    with_unknown_activation,
+)
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -129,3 +135,10 @@ def _text(item: am.CustomProperty) -> str:
     if not isinstance(item.value, am.StringObject):
         raise UnknownError("it is not a text")
     return item.value.value or ""
+
+
+def without_unreadable(system: System, tasks: Iterable[am.Task], models: Iterable[am.SWModel], context: Extracting) -> System:
+    """The system, in which nothing is known of tasks with properties that cannot be read; of all of them if that is one of a model."""
+    is_network_lost = any(model in context.without_property for model in models)
+    unknown = {context.names[task] for task in tasks if is_network_lost or task in context.without_property}
+    return with_unknown_activation(system, unknown) if unknown else system

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, TypeVar
 
@@ -23,6 +23,7 @@ class Importing:
     Attributes
     ----------
     findings : what could not be understood
+    damaged : objects of which the comment cannot be used, so that they mean more than is known
     derived_clocks : clocks of cores that a prescaler makes slower than any clock of the project
     frequency : of all cores, None if it is unknown or they differ
     """
@@ -33,6 +34,7 @@ class Importing:
         self.derived_clocks: dict[str, Frequency | None] = {}
         self.frequency: Frequency | None = None
         self.findings: list[Finding] = []
+        self.damaged: set[ProjectObject] = set()
         self._names: dict[str, dict[ProjectObject, str]] = {}
         self._taken: set[tuple[str, str]] = set()
         self._left_out: dict[str, list[ProjectObject]] = {}
@@ -71,6 +73,7 @@ class Importing:
             return noted(item)
         except UnknownError as error:
             self.comment_unused(item, error)
+            self.damaged.add(item)
             return {}
 
     def fields(self, item: ProjectObject, kind: type[Any], names: Iterable[str]) -> dict[str, Any]:
@@ -89,6 +92,24 @@ class Importing:
                 require_sealed(item)
         except UnknownError as error:
             self.comment_unused(item, error)
+            return None
+        return result
+
+    def checked(
+        self, item: ProjectObject, key: str, kind: type[T], flaw_of: Callable[[T], str | None], **known: Any
+    ) -> T | None:
+        """The object that the comment keeps under a key; None if there is none, or if it cannot be used, with a finding.
+
+        Parameters
+        ----------
+        flaw_of : why an object cannot be used; None if it can
+        """
+        result = self.whole(item, key, (kind,), sealed=False, **known)
+        flaw = None if result is None else flaw_of(result)
+        if flaw is not None:
+            self.comment_unused(item, UnknownError(flaw))
+        if flaw is not None or (result is None and key in self.noted(item)):
+            self.damaged.add(item)
             return None
         return result
 
