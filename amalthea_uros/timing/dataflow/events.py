@@ -171,6 +171,8 @@ class EventLocator:
         UnknownError : it does not occur in a process, or cannot be analysed.
         """
         found = list(self._occurrences(event))
+        if not found and (callback := self.system.callback_of_host_event.get(event.name)) is not None:
+            raise UnknownError(f"{callback.name!r} is a callback of the host")
         if not found:
             raise UnraisedError(f"no activity in the model raises the event {event.name!r}")
         return found
