@@ -80,7 +80,7 @@ class MemorySection(DescriptionSection):
     """Core cycles per access where they depend on the core: a memory of one core is slower for the others."""
 
 
-class HardwareSection(Shorthand):
+class HardwareSection(Shorthand, defer_build=False):
     """The controller that the application runs on: a platform, or a mapping with more.
 
     Other keys override those of the platform.

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any, Self, TypeAlias
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 
 from amalthea_uros import units
 from amalthea_uros.spec.section import Shorthand
+from amalthea_uros.spec.validators import Before
 from amalthea_uros.spec.values import editor_schema, problem, unexpected
 
 #: More are no exception; each takes a place in the memory of a simulation.
@@ -61,7 +62,7 @@ def _loss_rate(value: Any) -> LossRate:
 
 _Rate: TypeAlias = Annotated[
     LossRate,
-    BeforeValidator(_loss_rate),
+    Before(_loss_rate),
     editor_schema(
         _EXPECTED,
         type="string",

@@ -219,7 +219,7 @@ class MiddlewareTask(DescriptionSection):
     """Its stack."""
 
 
-class Middleware(DescriptionSection):
+class Middleware(DescriptionSection, defer_build=False):
     """The generic micro-ROS model of a platform."""
 
     profile: Name = "xrce-dds"

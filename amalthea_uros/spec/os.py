@@ -92,7 +92,7 @@ class SleepTicks(DescriptionSection):
     """Number of ticks by which a sleep can be longer than the ticks it is rounded up to."""
 
 
-class OsSection(DescriptionSection):
+class OsSection(DescriptionSection, defer_build=False):
     """The operating system."""
 
     rtos: (

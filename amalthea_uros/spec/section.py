@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, PrivateAttr, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler, PrivateAttr, model_validator
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core import CoreSchema
 
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.spec.nodes import MappingNode, Node, SequenceNode, YamlText
+from amalthea_uros.spec.validators import require_values
 
 #: How keys begin that are for other tools, or for anchors; they are ignored.
 EXTENSION = "x-"
@@ -18,7 +19,8 @@ EXTENSION = "x-"
 class DescriptionSection(BaseModel):
     """A mapping of the file."""
 
-    # Only the sections that something is validated by are built, with those in them, when that happens first.
+    # Only the sections that something is validated by are built, with those in them, when that happens first; but at once those of
+    # which descriptions, platforms and operating systems consist, which would build them once each.
     model_config = ConfigDict(extra="forbid", frozen=True, protected_namespaces=(), defer_build=True)
 
     _where: tuple[MappingNode, YamlText] | None = PrivateAttr(None)
@@ -32,13 +34,11 @@ class DescriptionSection(BaseModel):
             return value
         return {key: item for key, item in value.items() if not key.startswith(EXTENSION)}
 
-    @field_validator("*", mode="before")
     @classmethod
-    def _is_given(cls, value: Any) -> Any:
-        # A key without a value is a mistake also where the key is optional.
-        if value is None:
-            raise PydanticCustomError("empty", "no value")
-        return value
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        schema = handler(source)
+        require_values(handler.resolve_ref_schema(schema))
+        return schema
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:

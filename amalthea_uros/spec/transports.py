@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import MessageCost
 from amalthea_uros.spec.losses import LossesSection
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
+from amalthea_uros.spec.validators import After
 from amalthea_uros.spec.values import (
     BaudRate,
     BitRate,
@@ -278,7 +279,7 @@ class TransportSection(DescriptionSection):
     """The virtual serial port of USB."""
     custom: CustomTransport | None = None
     """Another transport."""
-    overhead: Annotated[SizeOrNothing, AfterValidator(_not_too_long)] = 12 * 8
+    overhead: Annotated[SizeOrNothing, After(_not_too_long)] = 12 * 8
     """Overhead of XRCE-DDS per message: message header, submessage header and object ids; default: 12 B."""
     acknowledgement: Duration | None = None
     """Maximum time until a reliable message is acknowledged."""

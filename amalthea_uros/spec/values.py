@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterable
 from math import isfinite
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema
+from pydantic import Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from amalthea_uros import units
+from amalthea_uros.spec.validators import After, Before
 
 #: In characters.
 MAX_NAME_LENGTH = 200
@@ -136,13 +137,13 @@ def _identifier(value: Any) -> Any:
     return value
 
 
-_TIME = BeforeValidator(_quantity(units.parse_time, units.TIME))
-_FREQUENCY = BeforeValidator(_quantity(units.parse_frequency, units.FREQUENCY))
-_DATA_SIZE = BeforeValidator(_quantity(units.parse_data_size, units.DATA_SIZE))
-_BIT_RATE = BeforeValidator(_quantity(units.parse_bit_rate, units.BIT_RATE))
+_TIME = Before(_quantity(units.parse_time, units.TIME))
+_FREQUENCY = Before(_quantity(units.parse_frequency, units.FREQUENCY))
+_DATA_SIZE = Before(_quantity(units.parse_data_size, units.DATA_SIZE))
+_BIT_RATE = Before(_quantity(units.parse_bit_rate, units.BIT_RATE))
 
 #: How the values of quantities are written, by what reads them.
-_TEXTS: tuple[tuple[BeforeValidator, Callable[[Any], str]], ...] = (
+_TEXTS: tuple[tuple[Before, Callable[[Any], str]], ...] = (
     (_TIME, units.time_text),
     (_FREQUENCY, units.frequency_text),
     (_DATA_SIZE, units.data_size_text),
@@ -157,31 +158,31 @@ def quantity_text(marks: Iterable[Any]) -> Callable[[Any], str] | None:
 
 
 #: A time above zero, in picoseconds.
-Duration: TypeAlias = Annotated[int, _TIME, AfterValidator(_positive), _text_schema(units.TIME)]
+Duration: TypeAlias = Annotated[int, _TIME, After(_positive), _text_schema(units.TIME)]
 #: A time of zero or more, in picoseconds.
-Offset: TypeAlias = Annotated[int, _TIME, AfterValidator(_not_negative), _text_schema(units.TIME, zero=True)]
+Offset: TypeAlias = Annotated[int, _TIME, After(_not_negative), _text_schema(units.TIME, zero=True)]
 #: The same, or the number 0, which needs no unit.
 OffsetOrNumberZero: TypeAlias = Annotated[
     int,
     _TIME,
-    BeforeValidator(_with_unit),
-    AfterValidator(_not_negative),
+    Before(_with_unit),
+    After(_not_negative),
     _text_schema(units.TIME, zero=True, number_zero=True),
 ]
 #: A frequency above zero, in hertz.
-Rate: TypeAlias = Annotated[Any, _FREQUENCY, AfterValidator(_positive), _text_schema(units.FREQUENCY)]
+Rate: TypeAlias = Annotated[Any, _FREQUENCY, After(_positive), _text_schema(units.FREQUENCY)]
 #: A data size above zero, in bits.
-Size: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_positive), _text_schema(units.DATA_SIZE)]
+Size: TypeAlias = Annotated[int, _DATA_SIZE, After(_positive), _text_schema(units.DATA_SIZE)]
 #: A data size of zero or more, in bits.
-SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, AfterValidator(_not_negative), _text_schema(units.DATA_SIZE, zero=True)]
+SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, After(_not_negative), _text_schema(units.DATA_SIZE, zero=True)]
 #: A bit rate above zero, in bits per second.
-BitRate: TypeAlias = Annotated[int, _BIT_RATE, AfterValidator(_positive), _text_schema(units.BIT_RATE)]
+BitRate: TypeAlias = Annotated[int, _BIT_RATE, After(_positive), _text_schema(units.BIT_RATE)]
 #: Symbols per second of a serial line, as everybody writes it: without a unit.
 BaudRate: TypeAlias = Annotated[int, Field(strict=True, ge=300, le=100_000_000)]
 #: Name of an object.
 Name: TypeAlias = Annotated[
     str,
-    BeforeValidator(_name),
+    Before(_name),
     # Numbers are names, too; that they are not is what YAML says, not the author.
     editor_schema(
         f"expected a name: {_NAME_RULE}", type=["string", "number"], pattern=r"^\S(.*\S)?$", maxLength=MAX_NAME_LENGTH
@@ -190,7 +191,7 @@ Name: TypeAlias = Annotated[
 #: A number above zero.
 Number: TypeAlias = Annotated[
     float,
-    BeforeValidator(_number),
+    Before(_number),
     Field(gt=0),
     editor_schema(
         "expected a number above zero such as 1.5",
@@ -200,7 +201,7 @@ Number: TypeAlias = Annotated[
     ),
 ]
 #: Before a choice of whole numbers, for which `true` and "1" would do as well.
-WHOLE_NUMBER = BeforeValidator(_whole_number)
+WHOLE_NUMBER = Before(_whole_number)
 #: A number of things.
 Count: TypeAlias = Annotated[int, Field(strict=True, ge=1, le=1_000_000)]
 #: A number of things, possibly zero.
@@ -212,7 +213,7 @@ PriorityNumber: TypeAlias = Annotated[int, Field(strict=True, ge=-(2**31) + 1, l
 #: An identifier of CAN frames, of 11 or 29 bits: a whole number, or text such as "0x120".
 CanIdentifier: TypeAlias = Annotated[
     int,
-    BeforeValidator(_identifier),
+    Before(_identifier),
     editor_schema(
         f"expected an identifier of up to 29 bits, 0 to {_GREATEST_IDENTIFIER:#x}",
         type=["integer", "string"],
