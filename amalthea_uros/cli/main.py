@@ -109,6 +109,13 @@ class LazyGroup(click.Group):
             return None
         return _load(cmd_name)
 
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find a command, and the present names of its options."""
+        from amalthea_uros.cli.wrong_options import with_new_names
+
+        name, command, words = super().resolve_command(ctx, args)
+        return name, command, words if command is None else with_new_names(command, words)
+
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The commands that begin so, without importing them."""
         from click.shell_completion import CompletionItem

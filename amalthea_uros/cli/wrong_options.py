@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import click
 
 #: Of all commands.
@@ -19,22 +21,31 @@ _INSTEAD = {
     "--time": "write --duration TIME, e.g. 10min",
     "--trace-file": "write --trace FILE.btf; the suffix says the format",
 }
-#: Names that were those of another option in another command.
+#: Names that are those of another option in another command: what was called so is called so now. The old name still works.
 _RENAMED = {
-    "--baseline": "--empty NAME subtracts the times of an empty object; --baseline of `amuros check` accepts findings",
-    "--baseline-from": "--empty-from TRACE names the trace with the empty object",
-    "--mode": "--mode-label LABEL=VALUE sets a mode label; --mode of `amuros simulate` chooses values that vary",
-    "--platform": "--board NAME chooses the board, as for `amuros init`; files are possible, too",
+    "--baseline": "--empty",
+    "--baseline-from": "--empty-from",
+    "--mode": "--mode-label",
+    "--platform": "--board",
 }
+
+
+def with_new_names(command: click.Command, words: Sequence[str]) -> list[str]:
+    """The words of a command line with the present names of options, and a note on each that had another one."""
+    options = {option for each in command.params for option in each.opts}
+    renamed = {old: new for old, new in _RENAMED.items() if new in options and old not in options}
+    return [_renamed(word, renamed) for word in words]
+
+
+def _renamed(word: str, renamed: Mapping[str, str]) -> str:
+    name, equals, value = word.partition("=")
+    if name not in renamed:
+        return word
+    click.echo(f"note: {name} of this command is now {renamed[name]}", err=True)
+    return f"{renamed[name]}{equals}{value}"
 
 
 def explained(error: click.NoSuchOption) -> click.UsageError:
     """The error with what to write instead, if that is known."""
-    name = error.option_name
-    context = error.ctx
-    options = set() if context is None else {option for each in context.command.params for option in each.opts}
-    instead = _INSTEAD.get(name)
-    renamed = _RENAMED.get(name)
-    if renamed is not None and renamed.split()[0] in options:
-        instead = renamed
-    return error if instead is None else click.UsageError(f"No such option {name!r}: {instead}.", context)
+    instead = _INSTEAD.get(error.option_name)
+    return error if instead is None else click.UsageError(f"No such option {error.option_name!r}: {instead}.", error.ctx)

@@ -278,7 +278,8 @@ def improvements_of(
     # Of a description, each is built to find out whether it is possible, so that no more of them are than are tried.
     prepared = list(islice((pair for one in every for pair in trial.prepared(one)), None if source is None else MAX_ANALYSES))
     most = min(MAX_ANALYSES, max(MIN_ANALYSES, MAX_PROCESSES // max(1, len(analysis.processes))))
-    singles = [found for each, changed in islice(prepared, most) if (found := trial.tried(each, changed)) is not None]
+    tries = (trial.tried(each, changed) for each, changed in islice(prepared, most))
+    singles = [each for each in tries if each is not None]
     ranked = sorted(singles, key=rank)
     return Improvements(
         chain=trial.chain,
@@ -289,9 +290,9 @@ def improvements_of(
     )
 
 
-def rank(found: Improvement) -> tuple[Time, bool]:
+def rank(improvement: Improvement) -> tuple[Time, bool]:
     """The shortest latency first."""
-    return found.after, not found.is_safe
+    return improvement.after, not improvement.is_safe
 
 
 #: Of the combinations, so many are shown, those with the most changes.
@@ -334,7 +335,7 @@ class Trial:
             yield candidate, changed
 
     def tried(self, candidate: ImprovingChange, changed: Configuration) -> Improvement | None:
-        """What an analysis says about a changed system; None if the latency does not get shorter."""
+        """The improvement by a changed system; None if the latency does not get shorter."""
         try:
             after = analyze_while(*changed, partial(_is_shorter, self.chain, self.quantity, self._before))
         except InvalidArgumentError:
@@ -354,14 +355,14 @@ class Trial:
             return
         best = ranked[0]
         for other in ranked[1:]:
-            both = _together(best.change, other.change)
+            both = _combination(best.change, other.change)
             if both is None or len(both.changes) > MAX_COMBINED:
                 continue
             for candidate, changed in self.prepared(both):
-                found = self.tried(candidate, changed)
-                if found is not None and found.after < min(best.after, other.after):
-                    best = found
-                    yield found
+                improvement = self.tried(candidate, changed)
+                if improvement is not None and improvement.after < min(best.after, other.after):
+                    best = improvement
+                    yield improvement
 
     def _differences(self, candidate: ImprovingChange) -> tuple[Difference, ...]:
         if self.source is None:
@@ -369,7 +370,7 @@ class Trial:
         return tuple(each for each in self.source.differences(candidate.changes) if not each.is_consequence)
 
 
-def _together(one: ImprovingChange, other: ImprovingChange) -> ImprovingChange | None:
+def _combination(one: ImprovingChange, other: ImprovingChange) -> ImprovingChange | None:
     """Two changes together; None if they set the same value, or a communication."""
     targets = [change.target for change in (*one.changes, *other.changes)]
     if len(set(targets)) < len(targets) or one.communication is not None or other.communication is not None:

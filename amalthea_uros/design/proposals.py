@@ -188,7 +188,7 @@ def proved_proposal(
 
 
 def _in_description(designs: Designs, candidate: Candidate, source: DescriptionOrigin) -> tuple[Change, ...]:
-    """What is written in a description for a design, and what of it no description states.
+    """The changes of a description for a design, with those that no description states.
 
     Raises
     ------

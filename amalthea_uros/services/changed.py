@@ -88,7 +88,7 @@ def open_changed(
 
 
 def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:
-    """What changes of a subject act on: the text of a description, otherwise the system; raises as `description_origin`."""
+    """The object that changes of a subject act on: the text of a description, otherwise the system; raises as `description_origin`."""
     if opened.assembly is None:
         return SystemOrigin(given)
     return description_origin(opened, given.settings, with_bus=with_bus)

@@ -101,7 +101,7 @@ def _described(old: Model | StrPath, new: Model | StrPath) -> tuple[Difference, 
 
 
 def _impact(systems: Sequence[System]) -> Impact:
-    """What the differences of two systems do to the results; nothing if there are none."""
+    """The effect of the differences of two systems on the results; nothing if there are none."""
     from amalthea_uros.analyze.impact import Impact, impact
     from amalthea_uros.analyze.system import analyze_system
 

@@ -50,8 +50,8 @@ def _of_description(changed: ChangedSystem) -> tuple[ChangeableValue, ...]:
 
 def _of_system(changed: ChangedSystem) -> tuple[ChangeableValue, ...]:
     return tuple(
-        ChangeableValue(name=f"{name}.{key}", value=found.show(changed.given, name))
+        ChangeableValue(name=f"{name}.{key}", value=property_.show(changed.given, name))
         for kind in KINDS
         for name in dict.fromkeys(kind.objects(changed.system))
-        for key, found in kind.keys.items()
+        for key, property_ in kind.keys.items()
     )

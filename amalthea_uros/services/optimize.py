@@ -191,10 +191,10 @@ def found_by(plan: OptimizationPlan, found: SearchResult, proposals: int = MOST_
     )
 
 
-def _proved(plan: OptimizationPlan, found: SearchResult, count: int) -> tuple[tuple[DesignProposal, ...], SearchResult]:
-    """The proposals, and what the search says without the designs that the edited description does not confirm."""
+def _proved(plan: OptimizationPlan, search: SearchResult, count: int) -> tuple[tuple[DesignProposal, ...], SearchResult]:
+    """The proposals, and the result of the search without the designs that the edited description does not confirm."""
     proved, refuted = list[DesignProposal](), list[DesignEvaluation]()
-    for each in found.best:
+    for each in search.best:
         if len(proved) == count:
             break
         proposal = proved_proposal(each, plan.evaluator, plan.before, plan.source)
@@ -203,15 +203,15 @@ def _proved(plan: OptimizationPlan, found: SearchResult, count: int) -> tuple[tu
         else:
             proved.append(proposal)
     if not refuted:
-        return tuple(proved), found
-    best = tuple(each for each in found.best if each not in refuted)
+        return tuple(proved), search
+    best = tuple(each for each in search.best if each not in refuted)
     reason = f"{counted(len(refuted), 'design')} of the system cannot be stated in the description"
     return tuple(proved), replace(
-        found,
+        search,
         best=best,
-        front=tuple(each for each in found.front if each not in refuted),
+        front=tuple(each for each in search.front if each not in refuted),
         conclusion=Conclusion.BEST_FOUND if best else Conclusion.NOT_FOUND,
-        ended="; ".join(filter(None, (found.ended, reason))),
+        ended="; ".join(filter(None, (search.ended, reason))),
     )
 
 

@@ -22,8 +22,8 @@ def written(section: DescriptionSection, key: str) -> Written | None:
 
 def content(section: DescriptionSection) -> dict[str, Written]:
     """The stated keys of a section with their values."""
-    found = {key: written(section, key) for key in type(section).model_fields if section.states(key)}
-    return {key: value for key, value in found.items() if value is not None}
+    values = {key: written(section, key) for key in type(section).model_fields if section.states(key)}
+    return {key: value for key, value in values.items() if value is not None}
 
 
 def is_list(section: DescriptionSection, key: str) -> bool:
@@ -50,7 +50,7 @@ def _written(value: Any, text: Callable[[Any], str] | None) -> Written:
 
 
 def _marks(field: FieldInfo) -> Iterator[Any]:
-    """What the type of a field is annotated with."""
+    """The marks of the type of a field."""
     yield from field.metadata
     for part in _parts(field.annotation):
         yield from getattr(part, "__metadata__", ())

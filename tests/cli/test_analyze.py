@@ -174,6 +174,13 @@ def test_proposed_priorities(tmp_path):
     assert "  Fast    1         2\n  Slow    2         1\n" in run.stdout, run.stdout + run.stderr
 
 
+def test_a_wire_has_no_clock_that_could_be_another_one():
+    """The waits of its driver would be scaled, too."""
+    run = amuros("analyze", ROOT / "samples" / "robot-xrce.yaml", "--frequency", "TCP_to_agent=1GHz")
+    assert run.returncode == 2
+    assert "'TCP_to_agent' is a wire" in run.stderr
+
+
 @pytest.mark.parametrize(
     ("offset", "deadline", "message"),
     [

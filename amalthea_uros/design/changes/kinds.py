@@ -93,7 +93,7 @@ def _show_core_frequency(configuration: Configuration, core: str) -> str:
 
 def _set_core_frequency(configuration: Configuration, core: str, frequency: Frequency) -> Configuration:
     """Change the frequency of one core; other cores with the same clock keep theirs."""
-    _refuse_wire(core, configuration.system)
+    refuse_wire(core, configuration.system)
     settings = configuration.settings
     return configuration._replace(settings=replace(settings, frequencies={**settings.frequencies, core: frequency}))
 
@@ -101,11 +101,11 @@ def _set_core_frequency(configuration: Configuration, core: str, frequency: Freq
 def _set_clock_frequency(configuration: Configuration, clock: str, frequency: Frequency) -> Configuration:
     for core in configuration.system.cores.values():
         if core.clock == clock:
-            _refuse_wire(core.name, configuration.system)
+            refuse_wire(core.name, configuration.system)
     return configuration._replace(system=CLOCKS.with_fields(configuration.system, clock, frequency=frequency))
 
 
-def _refuse_wire(core: str, system: System) -> None:
+def refuse_wire(core: str, system: System) -> None:
     """Refuse to scale the times on a wire: those of its driver are not all inversely proportional to the bit rate."""
     if any(core in wire.cores for wire in system.network.wires):
         raise InvalidArgumentError(

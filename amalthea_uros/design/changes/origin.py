@@ -13,7 +13,7 @@ from amalthea_uros.design.changes.timing_changes import described
 
 
 class ChangeOrigin(Protocol):
-    """What changes act on; it can be sent to other processes."""
+    """A system on which changes act; it can be sent to other processes."""
 
     @property
     def present(self) -> Configuration:

@@ -1,4 +1,4 @@
-"""What is written in a description for a new value of a key."""
+"""The edits in a description for a new value of a key."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ def the_key(target: str, keys: Sequence[DescriptionKey]) -> DescriptionKey | Non
     ------
     InvalidArgumentError : the name means several keys.
     """
-    found = matching(target, keys)
-    if len(found) > 1:
-        names = listed([short_name(each, keys) for each in found])
+    matches = matching(target, keys)
+    if len(matches) > 1:
+        names = listed([short_name(each, keys) for each in matches])
         raise InvalidArgumentError(f"{target!r} means several values of the description: {names}; choose one")
-    return found[0] if found else None
+    return matches[0] if matches else None
 
 
 @dataclass(slots=True)
@@ -159,7 +159,7 @@ def is_stated_by_parts(key: DescriptionKey) -> bool:
 
 
 def assignments(text: str, pairs: Iterable[tuple[DescriptionKey, Change]]) -> tuple[Assignment, ...]:
-    """What is written for changes of keys; raises as `Assignments.add`."""
+    """The edits for changes of keys; raises as `Assignments.add`."""
     collected = Assignments(text, {})
     for key, change in pairs:
         collected.add(key, change)

@@ -22,9 +22,9 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.uros.described import Described, describe_text
 
-#: What is changed in the system that is built, because it is an assumption about it which no description states.
+#: Keys that are changed in the system that is built, because it is an assumption about it which no description states.
 ASSUMED = ("communication", "arrival_jitter")
-#: What of tasks is shown if it follows from changes; everything else is seen in the results.
+#: Values of tasks that are shown if it follows from changes; everything else is seen in the results.
 _FOLLOWING = ("period", "offset", "priority", "core")
 
 
@@ -106,11 +106,11 @@ class DescriptionOrigin:
         divided, old = self.divided(changes), self._system(self.text)
         new = self._changed_system(divided, changes)
         text = self._text(divided)
-        found = {each.target: self._difference(each, key, text, divided) for each, key in divided.stated}
-        found |= {
+        values = {each.target: self._difference(each, key, text, divided) for each, key in divided.stated}
+        values |= {
             f"{each.object}.{each.key}": each for each in describe(new, self.settings, divided.assumed) if divided.assumed
         }
-        return (*found.values(), *_consequences(old, new, found))
+        return (*values.values(), *_consequences(old, new, values))
 
     def divided(self, changes: Sequence[Change]) -> DividedChanges:
         """The changes by what they act on.
@@ -138,23 +138,23 @@ class DescriptionOrigin:
         return bool(matching(target, self.keys))
 
     def changes_of(self, assignments: Sequence[Assignment]) -> tuple[Change, ...]:
-        """What is written, as changes by the shortest names of the values."""
+        """All edits, as changes by the shortest names of the values."""
         by_path = {key.path: key for key in self.keys}
-        found = []
+        values = []
         for each in assignments:
             key = by_path.get(each.path)
             target = each.target if key is None else short_name(key, self.keys)
             name, _, last = target.rpartition(".")
-            found.append(Change(name, last, compact(rendered(each.value))))
-        return tuple(found)
+            values.append(Change(name, last, compact(rendered(each.value))))
+        return tuple(values)
 
     def places(self) -> Places:
         """The keys that state values of objects that are built from the description."""
-        found = _described(self.text, self.path)
-        return Places(found.description, found.platform, found.core_types, found.assembly.priority_scale)
+        values = _described(self.text, self.path)
+        return Places(values.description, values.platform, values.core_types, values.assembly.priority_scale)
 
     def _of_built_object(self, change: Change) -> Sequence[Assignment]:
-        """What is written for a value of an object that is built, such as the runnable of a task."""
+        """The edits for a value of an object that is built, such as the runnable of a task."""
         try:
             return self.places().assignments(change)
         except InvalidArgumentError as error:
@@ -189,7 +189,7 @@ class DescriptionOrigin:
 
 
 def _consequences(old: System, new: System, shown: dict[str, Difference]) -> list[Difference]:
-    """What of tasks of the controller follows from changes."""
+    """Values of tasks of the controller follows from changes."""
     wires = {message.name for message in (*old.network.transmissions, *new.network.transmissions)}
     return [
         Difference(each.object, each.key, each.before, each.after, is_consequence=True)
@@ -202,7 +202,7 @@ def _consequences(old: System, new: System, shown: dict[str, Difference]) -> lis
 
 @lru_cache(maxsize=8)
 def _described(text: str, path: Path) -> Described:
-    """What a text describes; searches ask for the same ones again."""
+    """The content of a text; searches ask for the same ones again."""
     return describe_text(text, path)
 
 

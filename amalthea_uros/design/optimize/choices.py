@@ -126,7 +126,7 @@ def _needs_description(assembly: Assembly | None, wishes: Wishes) -> bool:
 
 
 def _is_stated(offer: Sweep, source: DescriptionOrigin, assembly: Assembly | None) -> bool:
-    """Whether a value on offer is one of the description that the system has not, or has in another form.
+    """Whether an available value is one of the description that the system has not, or has in another form.
 
     Raises
     ------

@@ -44,7 +44,7 @@ class DescribedCallbacks:
         return cls(origin, describe_text(origin.text, origin.path))
 
     def values(self, offers: Iterable[Sweep]) -> Iterator[Choice]:
-        """Values of the description on offer, the present one first."""
+        """Available values of the description, the present one first."""
         for offer in offers:
             present = self.origin.differences([Change(offer.object, offer.key, offer.values[0])])[0].before
             options = dict.fromkeys(map(compact, (present, *offer.values)))
