@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import chain as joined
 from itertools import islice, zip_longest
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron.project import Project

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from uuid import UUID, uuid5
 
@@ -11,6 +10,7 @@ from amalthea_uros._internal.files import STANDARD_INPUT, FileError, read_bytes
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.limits import MODEL_SIZE
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed

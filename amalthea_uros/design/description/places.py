@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.owners import Owner, OwnerKind, StatedTime, executors, owners
 from amalthea_uros.design.description.text_edits import Path, Value

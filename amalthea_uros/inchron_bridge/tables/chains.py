@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import keep_whole

@@ -6,9 +6,9 @@ are matched by the topic and the source stamp of the message; occurrences are nu
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import ClassVar, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.ctf.interpreters import Handler, Interpreter
 from amalthea_uros.trace.ctf.streams import CtfEvent

@@ -8,8 +8,8 @@ rmw_subscription.c, rmw_service.c, rmw_client.c). What receives data asks the ag
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.uros.application.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, PARAMETER_SERVICES
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.middleware.options import OptionRow, option_rows
 
