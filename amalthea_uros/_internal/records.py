@@ -1,15 +1,17 @@
 """Dataclasses whose methods are made when they are first needed.
 
 `dataclasses.dataclass` compiles up to six functions for each class, which takes ten times as long as everything else about it, and a
-short command imports five hundred classes. Here `__init__` is compiled by `dataclasses` when the first object is made, and the other
-methods are closures. Otherwise these are dataclasses like others: with `fields`, `replace`, `copy`, `pickle` and `inspect.signature`.
+short command imports five hundred classes. Here `__init__` is compiled when the first object is made, and the other methods are
+closures. Otherwise these are dataclasses like others: with `fields`, `replace`, `copy`, `pickle` and `inspect.signature`.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import MISSING, Field
 from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any
@@ -90,26 +92,50 @@ class _Constructor:
         return self._owner.__dict__["__init__"].__get__(instance, kind)
 
     def _made(self) -> Any:
-        """The `__init__` of a dataclass with the same fields."""
         owner, every = self._owner, dataclasses.fields(self._owner)
-        content = {name: getattr(owner, name) for name in ("__module__", "__qualname__", "__doc__")}
-        content["__annotations__"] = {each.name: each.type for each in every}
-        content |= {each.name: _copy(each) for each in every}
-        if hasattr(owner, "__post_init__"):
-            content["__post_init__"] = None
-        twin = type(owner.__name__, (), content)
-        slots = "__slots__" in owner.__dict__
-        made: Any = dataclasses.dataclass(repr=False, eq=False, frozen=self._frozen, match_args=False, slots=slots)(twin)
-        return made.__init__
+        scope = {"_object": object, "_factory": _FACTORY}
+        for each in every:
+            scope |= {f"_default_{each.name}": each.default, f"_make_{each.name}": each.default_factory}
+        given = [_parameter(each) for each in every if each.init and not each.kw_only]
+        named = [_parameter(each) for each in every if each.init and each.kw_only]
+        lines = [_assignment(each, frozen=self._frozen) for each in every if _is_assigned(each, owner)]
+        lines += ["self.__post_init__()"] if hasattr(owner, "__post_init__") else []
+        head = ", ".join(["self", *given, *(["*", *named] if named else [])])
+        text = f"def make({', '.join(scope)}):\n def __init__({head}):\n  {'; '.join(lines) or 'pass'}\n return __init__"
+        made: dict[str, Any] = {}
+        exec(text, getattr(sys.modules.get(owner.__module__), "__dict__", {}), made)
+        function = made["make"](**scope)
+        function.__qualname__ = f"{owner.__qualname__}.__init__"
+        function.__annotations__ = {each.name: each.type for each in every if each.init} | {"return": None}
+        return function
 
 
-def _copy(one: dataclasses.Field[Any]) -> Any:
-    options: dict[str, Any] = {"init": one.init, "kw_only": one.kw_only}
-    if one.default is not dataclasses.MISSING:
-        options["default"] = one.default
-    if one.default_factory is not dataclasses.MISSING:
-        options["default_factory"] = one.default_factory
-    return dataclasses.field(**options)
+class _Factory:
+    """The default of a parameter whose value is made."""
+
+    def __repr__(self) -> str:
+        return "<factory>"
+
+
+_FACTORY = _Factory()
+
+
+def _parameter(one: Field[Any]) -> str:
+    if one.default is not MISSING:
+        return f"{one.name}=_default_{one.name}"
+    return one.name if one.default_factory is MISSING else f"{one.name}=_factory"
+
+
+def _is_assigned(one: Field[Any], owner: Any) -> bool:
+    """Whether the constructor gives a value to a field; without slots, a default is in the class."""
+    return one.init or one.default_factory is not MISSING or (one.default is not MISSING and "__slots__" in owner.__dict__)
+
+
+def _assignment(one: Field[Any], *, frozen: bool) -> str:
+    name = one.name
+    made = f"_make_{name}()" if one.default_factory is not MISSING else f"_default_{name}"
+    value = made if not one.init else name if one.default_factory is MISSING else f"{made} if {name} is _factory else {name}"
+    return f'_object.__setattr__(self, "{name}", {value})' if frozen else f"self.{name} = {value}"
 
 
 def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
