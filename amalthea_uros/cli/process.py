@@ -20,8 +20,8 @@ from amalthea_uros.cli.ends import INTERRUPTED, broken, failed, say
 #: Signals after which everything is cleaned up; one that the caller ignores, as `nohup` does, remains ignored.
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 #: How many more objects there are before garbage is collected; usually 700, so that imports alone are scanned dozens of times. The
-#: imports of a command and a small model make about 60,000, so that these are not scanned at all.
-GARBAGE_THRESHOLD = 100_000
+#: imports of a command and a small model make about 110,000, so that these are not scanned at all.
+GARBAGE_THRESHOLD = 200_000
 #: Somebody who sends so many signals does not want to wait for that.
 _INSISTENCE = 3
 #: The signals so far.
