@@ -17,8 +17,9 @@ from amalthea_uros.units import Time
 
 #: The quantity of a measured time that is of an object as a whole: the response time of a process, the reaction time of a chain.
 WHOLE_TIME: Final = "time"
+_MEDIAN = Fraction(1, 2)
 #: The percentiles that are computed where all values are known.
-PERCENTILES = (Fraction(1, 2), Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
+PERCENTILES = (_MEDIAN, Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,9 +74,9 @@ def statistics_of(values: Numbers) -> TimeStatistics:
     deviations = (ordered - first)[None, :]
     (total,), (squares,) = sums(deviations), sums_of_squares(deviations)
     percentiles = {
-        share: int(ordered[ceil(share * count) - 1])
+        share: int(ordered[-(-share.numerator * count // share.denominator) - 1])
         for share in PERCENTILES
-        if share == Fraction(1, 2) or count * (1 - share) > 1
+        if share == _MEDIAN or count * (share.denominator - share.numerator) > share.denominator
     }
     return TimeStatistics(
         count=count,

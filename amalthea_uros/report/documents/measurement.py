@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from fractions import Fraction
+from itertools import islice
 from math import floor
 
 from amalthea_uros._internal.plural import counted
@@ -90,15 +91,13 @@ def count_rows(measurement: Measurement) -> Iterator[tuple[str, ...]]:
 
 def methods(measurement: Measurement) -> Iterator[str]:
     """How each object was measured, once for each way."""
-    found: dict[str, list[str]] = {}
+    found: dict[str, dict[str, None]] = {}
     for series in measurement.series:
         if series.quantity != "start_to_start":
-            names = found.setdefault(series.method, [])
-            if series.name not in names:
-                names.append(series.name)
+            found.setdefault(series.method, {})[series.name] = None
     for method, names in found.items():
         if method:
-            yield f"{', '.join(names[:3])}{f' and {len(names) - 3} more' if len(names) > 3 else ''}: {method}"
+            yield f"{', '.join(islice(names, 3))}{f' and {len(names) - 3} more' if len(names) > 3 else ''}: {method}"
 
 
 def closing_line(measurement: Measurement) -> str:
