@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
@@ -20,6 +22,7 @@ from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros.application import callbacks as uros
 from amalthea_uros.uros.application.callbacks import handle_count
+from amalthea_uros.uros.application.messages import Message
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.executor_runnables import message_cost, timer_count
 from amalthea_uros.uros.assembly.planned import PriorityScale
@@ -46,7 +49,7 @@ class Assignment:
     instead_of: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Places:
     """Finds the keys of changes in a description.
 
@@ -95,9 +98,23 @@ class Places:
         """Whether the description has an object of a name."""
         return bool(self._owners(name))
 
-    def _owners(self, name: str) -> list[Owner]:
-        everything = list(owners(self.description))
-        return [owner for owner in everything if owner.name == name]
+    def _owners(self, name: str) -> Sequence[Owner]:
+        return self._owners_by_name.get(name, ())
+
+    # A calibration asks for hundreds of them.
+    @cached_property
+    def _owners_by_name(self) -> Mapping[str, Sequence[Owner]]:
+        found = defaultdict[str, list[Owner]](list)
+        for owner in owners(self.description):
+            found[owner.name].append(owner)
+        return found
+
+    @cached_property
+    def _owners_by_path(self) -> Mapping[Path, Sequence[Owner]]:
+        found = defaultdict[Path, list[Owner]](list)
+        for owner in owners(self.description):
+            found[owner.path].append(owner)
+        return found
 
     def _memory(self, change: Change) -> Iterable[Assignment]:
         """The memory of a label; a buffer that is not listed keeps the size of its messages."""
@@ -143,10 +160,8 @@ class Places:
 
     def _target(self, path: Path) -> str:
         """The object and the keys of a path."""
-        holder = max(
-            (owner for owner in owners(self.description) if path[: len(owner.path)] == owner.path),
-            key=lambda owner: (len(owner.path), owner.kind not in _PARTS),
-        )
+        nearest = next(held for end in range(len(path), -1, -1) if (held := self._owners_by_path.get(path[:end])))
+        holder = max(nearest, key=lambda owner: owner.kind not in _PARTS)
         return ".".join(
             map(str, (getattr(holder.section, "name", holder.name), *(path[len(holder.path) :] or ["execution_time"])))
         )
@@ -201,11 +216,16 @@ class Places:
 
     def _publishing(self, section: CallbackSection) -> Time:
         """What publishing adds to the execution time of a callback."""
-        sent = next((each.outgoing for each in self.callbacks if each.section is section), ())
+        sent = self._outgoing.get(id(section), ())
         publish = self.description.middleware.publish
         return _constant((part for message in sent for part in message_cost(publish, message.size)), section.name)
 
-    @property
+    @cached_property
+    def _outgoing(self) -> Mapping[int, Sequence[Message]]:
+        """What callbacks publish, by the identities of their sections, which exist as long as the description."""
+        return {id(each.section): each.outgoing for each in reversed(self.callbacks)}
+
+    @cached_property
     def callbacks(self) -> tuple[uros.Callback, ...]:
         """The callbacks, with their intervals and messages."""
         return uros.callbacks_of(self.description.application, self.description.middleware, Notes())
