@@ -1,6 +1,8 @@
 """How much a first look costs: CPU time of whole commands on a sample, as a multiple of what Python takes to import their libraries.
 
-The commands take turns, so that whatever else the computer does concerns all of them; of each the least time counts.
+The commands take turns, so that whatever else the computer does concerns all of them; of each the least time counts. All modules are
+compiled before, as those of an installed package are. With the folder of another checkout, `python benchmarks/start.py FOLDER`, its
+commands take turns with the present ones, as the figures before a change.
 """
 
 from __future__ import annotations
@@ -12,7 +14,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 ROUNDS = 5
-SAMPLES = Path(__file__).parents[1] / "samples"
+ROOT = Path(__file__).parents[1]
+SAMPLES = ROOT / "samples"
 APPLICATION, MODEL = (SAMPLES / f"bodas-test-advanced.{suffix}" for suffix in ("yaml", "amxmi"))
 IMPORTS = "import numpy, click, yaml, pydantic"
 COMMANDS = {
@@ -27,21 +30,26 @@ COMMANDS = {
 
 
 def main() -> None:
+    roots = [ROOT, *map(Path, sys.argv[1:2])]
+    calls = {(name, root): ["-m", "amalthea_uros", *map(str, words)] for name, words in COMMANDS.items() for root in roots}
+    calls[IMPORTS, ROOT] = ["-c", IMPORTS]
     with TemporaryDirectory() as folder:
-        words = {name: ["-m", "amalthea_uros", *map(str, command)] for name, command in COMMANDS.items()}
-        words[IMPORTS] = ["-c", IMPORTS]
-        rounds = [{name: _cpu([sys.executable, *each], folder) for name, each in words.items()} for _ in range(ROUNDS)]
-    least = {name: min(each[name] for each in rounds) for name in words}
-    print(f"{IMPORTS}: {least[IMPORTS]:.2f} s of CPU time")
+        # The first round compiles.
+        rounds = [{call: _cpu(words, folder, call[1]) for call, words in calls.items()} for _ in range(ROUNDS + 1)][1:]
+    least = {call: min(each[call] for each in rounds) for call in calls}
+    unit = least[IMPORTS, ROOT]
+    print(f"{IMPORTS}: {unit:.2f} s of CPU time")
     for name in COMMANDS:
-        print(f"{name}: {least[name]:.2f} s, {least[name] / least[IMPORTS]:.1f} times the imports")
+        now, *before = (f"{least[name, root]:.2f} s, {least[name, root] / unit:.1f} times the imports" for root in roots)
+        print(f"{name}: {now}{''.join(f'; before {each}' for each in before)}")
 
 
-def _cpu(command: list[str], folder: str) -> float:
-    """Seconds of CPU time of a process."""
-    environment = {**os.environ, "PYTHONPATH": str(SAMPLES.parent)}
+def _cpu(words: list[str], folder: str, root: Path) -> float:
+    """Seconds of CPU time of a process of Python."""
+    own = {"PYTHONPATH": str(root), "PYTHONPYCACHEPREFIX": str(Path(folder, "compiled"))}
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"} | own
     streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    process = subprocess.Popen(command, cwd=folder, env=environment, **streams)
+    process = subprocess.Popen([sys.executable, *words], cwd=folder, env=environment, **streams)
     _, _, usage = os.wait4(process.pid, 0)
     return usage.ru_utime + usage.ru_stime
 
