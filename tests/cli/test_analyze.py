@@ -306,8 +306,8 @@ class TestExplain:
         assert [hop["process"] for hop in chain["hops"]] == ["Executor_Task", "Message_Factor", "Control_Function"]
         assert [cause["kind"] for cause in chain["hops"][2]["wait_causes"]] == ["next_job", "interference"]
         best = result["explanation"]["improvements"]["found"][0]
-        # The callback in each millisecond: one for the next control function, the executor and the control function itself.
-        assert (best["before_ps"], best["after_ps"]) == (20_029_000_000, 1_016_000_000)
-        assert best["changes"] == [{"key": "Message_Factor.period", "from": "20 ms", "to": "1 ms", "consequence": False}]
+        # The callback in each millisecond, with the priority of that rate: the executor, 25 us, and both functions, 2 and 4 us.
+        assert (best["before_ps"], best["after_ps"]) == (20_029_000_000, 31_000_000)
+        assert best["changes"] == [{"key": "Message_Factor.task_period", "from": "not set", "to": "1 ms", "consequence": False}]
         # The rest of the result is there as well.
         assert result["chains"][0]["name"] == "factor-to-output"

@@ -46,6 +46,7 @@ CALLS = {
     "completion": "bash",
     "diff": "a.amxmi a.amxmi",
     "explain": "XMI020",
+    "export": "app.yaml -o app.iprx",
     "fmt": "--check a.amxmi",
     "generate": "xrce.yaml -o build",
     "import": "node.c -o imported.yaml",
@@ -59,7 +60,7 @@ CALLS = {
     "rules": "",
     "schema": "",
     "simulate": "app.yaml --runs 3 --jobs 2 --duration 10ms",
-    "sweep": "app.yaml --sweep Executor_Task.period=10ms..200ms/1ms --jobs 2",
+    "sweep": "app.yaml --sweep Message_Factor.rate=10Hz..50Hz/10Hz --jobs 2",
 }
 
 

@@ -7,7 +7,8 @@ from support import ROOT
 ADVANCED = ROOT / "samples" / "bodas-test-advanced.yaml"
 SHORT = ("--duration", "50ms")
 #: It is activated every millisecond.
-OVERLOADED = ("--set", "Control_Function.execution_time=2ms")
+#: More than a millisecond in each.
+OVERLOADED = ("--set", "Control_Function.execution_time=0.999ms")
 
 
 def test_the_suffix_says_the_format(tmp_path):
@@ -33,9 +34,9 @@ def test_the_summary_is_that_of_the_sample():
 def test_changes_are_reported_with_their_impact():
     run = amuros("report", ADVANCED, "--no-simulation", *OVERLOADED, "--output", "markdown")
     assert run.returncode == 1
-    assert "| Control_Function.execution_time | 4 us | 2 ms |" in run.stdout
+    assert "| Control_Function.execution_time | 4 us | 999 us |" in run.stdout
     assert "### Before and after" in run.stdout
-    assert "Control_Function.execution_time: 4 us -> 2 ms" in run.stderr
+    assert "Control_Function.execution_time: 4 us -> 999 us" in run.stderr
 
 
 @pytest.mark.parametrize(("fail_on", "code"), [("missed", 1), ("never", 0)])

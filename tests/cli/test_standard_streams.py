@@ -87,7 +87,7 @@ def test_a_baseline_goes_out_and_comes_in():
     assert json.loads(written.stdout)["accepted"]
     path = DATA / "brake.amxmi"
     accepted = amuros("check", path, "--write-baseline", "-").stdout
-    assert amuros("check", path, "--baseline", "-", given=accepted).stdout == "no findings\n"
+    assert amuros("check", path, "--baseline", "-", given=accepted).stdout.endswith("\nno findings\n")
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.init import catalogue, init_from_board
+from amalthea_uros.spec.written import is_list
 from amalthea_uros.units import MILLISECOND
 from amalthea_uros.uros.described import describe_text
 
@@ -193,7 +194,8 @@ def test_setting_any_value_is_editing_the_file(case):
     number, name, value = case
     path, text = TEXTS[number]
     (key,) = matching(name, keys_in(number))
-    tree = edited_tree(yaml.safe_load(text), key.path, value)
+    is_names = isinstance(value, str) and not key.item and is_list(key.section, key.field) and not key.is_part
+    tree = edited_tree(yaml.safe_load(text), key.path, [value] if is_names else value)
     assume(tree is not None)
     by_hand = outcome(lambda: describe_text(yaml.safe_dump(tree, sort_keys=False), path).assembly.system)
     origin = DescriptionOrigin(text=text, path=path, settings=amuros.Settings())

@@ -22,6 +22,7 @@ from amalthea_uros.design.optimize.space import (
 )
 from amalthea_uros.services.optimize import plan_optimization
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 
 @st.composite
@@ -41,7 +42,7 @@ def test_no_deadline_is_missed_in_the_simulation_of_a_proposal(system):
     found = optimize(system, proposals=2)
     for proposal in found.proposals:
         assert proposal.analysis.summary.schedulable == "yes"
-        run = simulate(proposal.configuration.system, MS)
+        run = simulate(proposal.configuration.system, Duration(MS))
         for process in proposal.analysis.processes:
             observed = run.processes[process.name].metrics["response_time"].max
             assert observed <= process.wcrt <= process.deadline

@@ -129,16 +129,16 @@ SINGLE = (
 )
 
 
-@pytest.mark.parametrize(
-    ("limit", "periods"), every(2, [("11ms", {"1 ms", "2 ms", "5 ms", "10 ms"}), ("5ms", {"1 ms", "2 ms"})])
-)
+@pytest.mark.parametrize(("limit", "periods"), every(2, [("11ms", {"1 ms", "10 ms"}), ("5ms", {"1 ms"})]))
 def test_one_change_brings_the_latency_below_a_limit(limit, periods):
     found = optimize(SAMPLE, offers=SINGLE, limits=[f"{REACTION}<{limit}"])
+    # The description allows tasks of 1, 10, 20 and 100 ms.
     # An executor every 20 ms would have 1.004 ms from the job that takes the message, but 21.004 ms from its arrival.
     assert {(each.target, each.after) for proposal in found.proposals for each in proposal.differences} == {
         ("Message_Factor.period", period) for period in periods
     }
-    assert found.search.conclusion is Conclusion.OPTIMAL
+    # The search also finds tasks of 2 and 5 ms, which the description cannot state.
+    assert (found.search.conclusion, "cannot be stated" in found.search.ended) == (Conclusion.BEST_FOUND, True)
     assert all(proposal.evaluation.is_exact for proposal in found.proposals)
     assert found[0].differences[0].after == "1 ms"
 

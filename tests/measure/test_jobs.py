@@ -115,9 +115,7 @@ tasks = st.tuples(st.integers(1, 20), st.integers(1, 12), st.integers(0, 5))
 @given(st.lists(tasks, min_size=1, max_size=4), st.booleans())
 def test_the_trace_of_a_simulation_has_what_it_observed(parameters, with_chain):
     made = [
-        task(
-            name=f"T{number}", period=period * 100 * MICROSECOND, wcet=wcet * 10 * MICROSECOND, offset=offset * 30 * MICROSECOND
-        )
+        task(name=f"T{number}", period=period * 100, wcet=wcet * 10, offset=offset * 30, unit="us")
         for number, (period, wcet, offset) in enumerate(parameters)
     ]
     chains = {"chain": [each.name for each in made]} if with_chain else None

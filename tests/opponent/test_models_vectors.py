@@ -16,6 +16,7 @@ from support import SHARED
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate
+from amalthea_uros.units import Duration
 
 #: Models with every construct, and those with further ones.
 FOLDERS = [SHARED / "vectors" / folder for folder in ("constructs", "constructs2")]
@@ -102,7 +103,7 @@ def test_plays_refute_nothing_either(block):
 def test_simulated_response_times_are_those_of_the_plays(block):
     found = {}
     for path in every(7, EQUAL[block :: len(BLOCKS)]):
-        simulation = simulate(path, ENTRIES[path]["play_length_ps"])
+        simulation = simulate(path, Duration(ENTRIES[path]["play_length_ps"]))
         if said := list(played_otherwise(simulation, published(path))):
             found[path.name] = said
     assert found == {}

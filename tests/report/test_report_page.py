@@ -19,7 +19,7 @@ from amalthea_uros.perf.constraints import Bound, Constraints, Requirement, Time
 from amalthea_uros.report.basics.document import table
 from amalthea_uros.report.wording.chains import value_text
 from amalthea_uros.report.wording.closing_line import closing_line
-from amalthea_uros.units import MILLISECOND, Rounding, rounded_time_text
+from amalthea_uros.units import MILLISECOND, Duration, Rounding, rounded_time_text
 
 SAMPLES = ROOT / "samples"
 ADVANCED = SAMPLES / "bodas-test-advanced.yaml"
@@ -178,14 +178,16 @@ def test_a_model_without_anything_is_unknown(tmp_path):
 
 
 def test_what_fails_and_what_is_unknown_comes_first():
-    page = report(ADVANCED, PHASE, changes=("Control_Function.execution_time=2ms",), duration="100 ms").html
+    page = report(
+        ADVANCED.with_suffix(".amxmi"), PHASE, changes=("Control_Function.execution_time=2ms",), duration="100 ms"
+    ).html
     verdict = text(section(page, "verdict"))
     assert "Not schedulable" in verdict
     # 2 ms in each ms, and 12 us, and now and then 13 us more.
     assert "need 201.3 %" in verdict
     shown = [row["verdict"].split()[-1] for row in rows(page, "requirements", "Deadlines").values()]
     assert shown == ["overload", "missed", "unknown", "met"]
-    assert rows(page, "changes", "Changed values")["Control_Function.execution_time"]["after"] == "2000 ticks"
+    assert rows(page, "changes", "Changed values")["Control_Function.execution_time"]["after"] == "2 ms"
     assert rows(page, "changes", "Results before")["system"]["after"] == "no"
 
 
@@ -237,7 +239,7 @@ def test_a_system_and_a_model_are_reported_like_a_file():
 def test_pictures_from_kept_events_are_those_of_repeated_runs():
     # Without a duration, the run keeps its events.
     chosen = report(ADVANCED, PHASE)
-    stated = report(ADVANCED, PHASE, duration=chosen.content.simulation.options.duration)
+    stated = report(ADVANCED, PHASE, duration=Duration(chosen.content.simulation.options.duration))
     first, second = (section(each.html, "worst-observed") for each in (chosen, stated))
     assert html.tostring(first) == html.tostring(second)
 

@@ -276,8 +276,9 @@ def gap(first, then):
         ("start of T", "end of R", True),
         ("end of R", "start of T", False),
         ("start of R", "start of R", True),
-        # What is no moment, or occurs nowhere, is not judged.
-        ("any of T", "end of U", True),
+        # Whatever moment it is.
+        ("any of T", "end of U", False),
+        # What occurs nowhere is not judged.
         ("L is read", "end of U", True),
         (None, "end of U", True),
         ("start of T", None, True),

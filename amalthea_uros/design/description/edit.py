@@ -124,6 +124,7 @@ class EditedDescription:
     before, text : without and with the edits
     edits : in the order of the changes
     assignments : what was written for them
+    kept : those of them that keep values as they were, which would otherwise have followed the others
     """
 
     path: Path
@@ -131,6 +132,12 @@ class EditedDescription:
     text: str
     edits: tuple[ValueEdit, ...]
     assignments: tuple[Assignment, ...] = ()
+    kept: tuple[Assignment, ...] = ()
+
+    @property
+    def stated(self) -> tuple[Assignment, ...]:
+        """What the changes alone say."""
+        return self.assignments[: len(self.assignments) - len(self.kept)]
 
 
 def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = ()) -> EditedDescription:
@@ -170,7 +177,9 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
         consequences += [assignment for change in more for assignment in places.assignments(change)]
     edits = [*value_edits(text, edited, assignments), *value_edits(text, edited, consequences, is_consequence=True)]
     every = (*assignments, *consequences)
-    return EditedDescription(path=path, before=text, text=edited, edits=tuple(edits), assignments=every)
+    return EditedDescription(
+        path=path, before=text, text=edited, edits=tuple(edits), assignments=every, kept=tuple(consequences)
+    )
 
 
 def _restructured(text: str, path: Path, structural: Sequence[Change], values: Sequence[Change]) -> EditedDescription:
@@ -183,7 +192,7 @@ def _restructured(text: str, path: Path, structural: Sequence[Change], values: S
     edited = edit_description(rebuilt, path, values)
     edits = (*value_edits(text, edited.text, assignments), *edited.edits)
     every = (*assignments, *edited.assignments)
-    return EditedDescription(path=path, before=text, text=edited.text, edits=edits, assignments=every)
+    return EditedDescription(path=path, before=text, text=edited.text, edits=edits, assignments=every, kept=edited.kept)
 
 
 def apply_assignments(text: str, assignments: Iterable[Assignment]) -> str:

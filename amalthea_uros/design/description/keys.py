@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.description.text_edits import Path, has_list
 from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.written import Written, section_class, written
 
@@ -70,12 +71,17 @@ class DescriptionKey:
 def is_listed(key: DescriptionKey) -> bool:
     """Whether a key is shown in lists: single values, and what may be written as one; of its parts, those that are stated."""
     kind = None if key.item else section_class(key.section, key.field)
-    if kind is not None and (not issubclass(kind, Shorthand) or key.path == ("hardware",)):
+    if kind is not None and not (issubclass(kind, Shorthand) and _is_one_value(getattr(key.section, key.field), key.path)):
         return False
     if isinstance(getattr(key.section, key.field), list) and _has_sections(getattr(key.section, key.field)):
         return False
-    inner = any(isinstance(holder.section, Shorthand) for holder in key.holders[1:] if holder.path != ("hardware",))
+    inner = any(isinstance(each.section, Shorthand) and _is_one_value(each.section, each.path) for each in key.holders[1:])
     return not inner or key.section.states(key.field)
+
+
+def _is_one_value(section: object, path: Path) -> bool:
+    """Whether a section that may be a plain value is shown as one; a loop if it is a list of items."""
+    return path != ("hardware",) and (not isinstance(section, LoopSection) or section.items is not None)
 
 
 def _has_sections(items: list[object]) -> bool:

@@ -55,12 +55,12 @@ def refusal(
 
 
 def _meant(change: Change, keys: Sequence[DescriptionKey], own: Sequence[str]) -> str:
-    """The value that is meant: one of the object, the only one with the key, or one with a similar name; "" if there is none."""
-    if near := similar(change.key, own):
-        return f"{change.object}.{near[0]}"
+    """The value that is meant: the only one with the key, one of the object, or one with a similar name; "" if there is none."""
     elsewhere = [short_name(key, keys) for key in keys if key.path[-1] == change.key]
     if len(elsewhere) == 1:
         return elsewhere[0]
+    if near := similar(change.key, own):
+        return f"{change.object}.{near[0]}"
     names = (name for key in keys if not key.is_part for name in _names(key))
     return next(iter(similar(change.target, dict.fromkeys(names), cutoff=0.85)), "")
 

@@ -99,12 +99,19 @@ def routes_of_paths(
     found: dict[tuple[str, ...], list[Route]] = {}
     gaps: list[tuple[str, str]] = []
     for path in sequences(unfolded):
-        try:
-            of_path = [events[name] for name in path]
-            read = readings(of_path) if with_readings else [of_path]
-            found[path] = [route for each in read for route in routes(each, dataflow)]
-        except UnlinkedError as error:
-            gaps += error.gaps
+        of_path = [events[name] for name in path]
+        routes_here: list[Route] = []
+        unlinked: list[UnlinkedError] = []
+        for each in readings(of_path) if with_readings else [of_path]:
+            try:
+                routes_here += routes(each, dataflow)
+            except UnlinkedError as error:
+                unlinked.append(error)
+        if unlinked and routes_here:
+            raise UnknownError(f"events of the chain have no type, and with some types {unlinked[0]}")
+        if unlinked:
+            gaps += unlinked[0].gaps
+        found[path] = routes_here
     if gaps:
         raise UnlinkedError(list(dict.fromkeys(gaps)))
     return found

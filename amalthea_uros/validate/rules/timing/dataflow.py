@@ -13,6 +13,7 @@ from amalthea_uros.perf.software import Label
 from amalthea_uros.timing.blocking.critical_sections import exclusively_held
 from amalthea_uros.timing.dataflow.chains import steps
 from amalthea_uros.timing.dataflow.routes import crosses, is_linked
+from amalthea_uros.timing.dataflow.untyped_events import readings
 from amalthea_uros.timing.jobs.positions import ActivityPosition
 from amalthea_uros.timing.scheduling.allocation import operating_system_of
 from amalthea_uros.validate.rule import SystemProblem, system_rule
@@ -47,7 +48,10 @@ def _unlinked_steps(context: SystemContext) -> Iterator[_UnlinkedStep]:
         for item, starts, ends in steps(chain, system):
             for first, then in product(starts, ends):
                 is_known = first != then and first in events and then in events
-                if is_known and not is_linked(events[first], events[then], context.dataflow):
+                if not is_known:
+                    continue
+                moments = readings((events[first], events[then]))
+                if not any(is_linked(start, end, context.dataflow) for start, end in moments):
                     yield _UnlinkedStep(chain.name, item, first, then)
 
 
