@@ -45,7 +45,7 @@ def _record(cls: Any, *, frozen: bool = False, slots: bool = False, kw_only: boo
 
 
 def _methods(made: Any, **kept: bool) -> dict[str, Any]:
-    """What a class gets, unless it has it."""
+    """The methods of a class, which it gets unless it has its own."""
     every = dataclasses.fields(made)
     names = [each.name for each in every]
     methods: dict[str, Any] = {"__init__": _Constructor(made, frozen=kept["frozen"])}
@@ -139,7 +139,7 @@ def _assignment(one: Field[Any], *, frozen: bool) -> str:
 
 
 def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
-    """What gets some attributes of an object."""
+    """A function that returns some attributes of an object."""
     if len(names) > 1:
         return attrgetter(*names)
     return lambda each: tuple([getattr(each, name) for name in names])

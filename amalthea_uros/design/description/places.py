@@ -104,17 +104,17 @@ class Places:
     # A calibration asks for hundreds of them.
     @cached_property
     def _owners_by_name(self) -> Mapping[str, Sequence[Owner]]:
-        found = defaultdict[str, list[Owner]](list)
+        by_name = defaultdict[str, list[Owner]](list)
         for owner in owners(self.description):
-            found[owner.name].append(owner)
-        return found
+            by_name[owner.name].append(owner)
+        return by_name
 
     @cached_property
     def _owners_by_path(self) -> Mapping[Path, Sequence[Owner]]:
-        found = defaultdict[Path, list[Owner]](list)
+        by_path = defaultdict[Path, list[Owner]](list)
         for owner in owners(self.description):
-            found[owner.path].append(owner)
-        return found
+            by_path[owner.path].append(owner)
+        return by_path
 
     def _memory(self, change: Change) -> Iterable[Assignment]:
         """The memory of a label; a buffer that is not listed keeps the size of its messages."""
@@ -222,7 +222,7 @@ class Places:
 
     @cached_property
     def _outgoing(self) -> Mapping[int, Sequence[Message]]:
-        """What callbacks publish, by the identities of their sections, which exist as long as the description."""
+        """The messages that callbacks publish, by the identities of their sections, which exist as long as the description."""
         return {id(each.section): each.outgoing for each in reversed(self.callbacks)}
 
     @cached_property
