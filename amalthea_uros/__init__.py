@@ -17,8 +17,8 @@ This module is the public interface:
 - pictures of results: `gantt`, `timeline`, `histogram`, `picture`
 - files: `load`, `save`, `check_files`, `analyze_files`, `simulate_files`, `simulate_campaign`, `build`, `describe`, `diff`, `migrate`,
   with their results
-- the files for the build of the firmware, and a description of code that exists: `generate`, `check_colcon_meta`, `import_code`, with
-  their results
+- the files for the build of the firmware, and a description of code that exists: `generate`, `check_colcon_meta`, `import_code`,
+  `import_recording`, with their results
 - from measurements to better designs: `measure`, `compare`, `calibrate`, `optimize`, `sweep`, with their results
 - reports of all of these as one HTML page: `report`
 - events of simulations: `EventTable`; changes of values: `parse_change`, `parse_sweep`
@@ -147,6 +147,7 @@ if TYPE_CHECKING:
     from amalthea_uros.services.generate import generate as generate
     from amalthea_uros.services.import_code import ImportResult as ImportResult
     from amalthea_uros.services.import_code import import_code as import_code
+    from amalthea_uros.services.import_recording import import_recording as import_recording
     from amalthea_uros.services.measure import measure as measure
     from amalthea_uros.services.migrate import MigrationResult as MigrationResult
     from amalthea_uros.services.migrate import migrate as migrate
@@ -236,6 +237,7 @@ _NAMES = {
     "services.explain": ("explain", "improvements"),
     "services.generate": ("GenerateResult", "MetaCheck", "check_colcon_meta", "generate"),
     "services.import_code": ("ImportResult", "import_code"),
+    "services.import_recording": ("import_recording",),
     "services.measure": ("measure",),
     "services.migrate": ("MigrationResult", "migrate"),
     "services.optimize": ("Optimization", "optimize"),

@@ -232,6 +232,7 @@ def parse_bit_rate(text: str) -> BitRate:
 #: Units for output, largest first.
 _TIME_STEPS = (("s", SECOND), ("ms", MILLISECOND), ("us", MICROSECOND), ("ns", NANOSECOND), ("ps", PICOSECOND))
 _FREQUENCY_STEPS = (("GHz", 10**9), ("MHz", 10**6), ("kHz", 10**3), ("Hz", 1))
+_BIT_RATE_STEPS = (("Gbit/s", 10**9), ("Mbit/s", 10**6), ("kbit/s", 10**3), ("bit/s", 1))
 _DATA_STEPS = tuple((unit, DATA_SIZE.units[unit]) for unit in ("GiB", "GB", "MiB", "MB", "KiB", "kB", "B", "bit"))
 
 
@@ -338,6 +339,11 @@ def _side(value: Fraction, limit: int | Fraction) -> tuple[bool, bool]:
 def frequency_text(value: Frequency) -> str:
     """A frequency for people: "300 MHz"."""
     return _steps_text(value, _FREQUENCY_STEPS)
+
+
+def bit_rate_text(value: BitRate) -> str:
+    """A bit rate in the largest unit of which it has at least one: "250 kbit/s"."""
+    return _steps_text(value, _BIT_RATE_STEPS)
 
 
 def data_size_text(value: DataSize) -> str:

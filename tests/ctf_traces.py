@@ -69,7 +69,7 @@ trace {
     major = 1; minor = 8; byte_order = ORDER; uuid = "2a6422d0-6cee-11e0-8c08-cb07d7b3a564";
     packet.header := struct { uint32_t magic; uint8_t uuid[16]; uint32_t stream_id; };
 };
-env { domain = "ust"; tracer_name = "lttng-ust"; };
+env { domain = "ust"; tracer_name = "lttng-ust"; hostname = "pc"; };
 clock { name = "monotonic"; freq = 1000000000; offset_s = 1700000000; offset = 5; };
 typealias integer { size = 27; align = 1; signed = false; map = clock.monotonic.value; } := uint27_clock_t;
 typealias integer { size = 64; align = 8; signed = false; map = clock.monotonic.value; } := uint64_clock_t;
@@ -169,6 +169,12 @@ def ros2_writer(order: str = "<") -> PacketWriter:
     writer.define(
         "ros2:rmw_take", "QQqB", rmw_subscription_handle=address, message=address, source_timestamp="int64_t", taken="uint8_t"
     )
+    writer.define("ros2:rcl_init", "QS", context_handle=address, version=text)
+    writer.define(
+        "ros2:rcl_service_init", "QQQS", service_handle=address, node_handle=address, rmw_handle=address, service_name=text
+    )
+    writer.define("ros2:rclcpp_service_callback_added", "QQ", service_handle=address, callback=address)
+    writer.define("ros2:rcl_publish", "QQ", publisher_handle=address, message=address)
     thread = "letter_t _{0}comm[16]; int32_t _{0}tid; int32_t _{0}prio;"
     writer.define("sched_switch", "CiiqCii", all=f"{thread.format('prev_')} int64_t _prev_state; {thread.format('next_')}")
     return writer

@@ -26,6 +26,8 @@ def samples(tmp_path, monkeypatch):
     for path in (ROOT / "samples").iterdir():
         if path.is_file():
             shutil.copy(path, tmp_path)
+        else:
+            shutil.copytree(path, tmp_path / path.name)
     monkeypatch.chdir(tmp_path)
     if not IS_THOROUGH:
         warm_up()

@@ -11,6 +11,7 @@ from command import amuros
 from support import ROOT
 
 from amalthea_uros import am, load, save
+from amalthea_uros.report.formats import formats_for
 
 PAGES = ROOT / "docs" / "json"
 TYPES = {"text": str, "integer": int, "number": (int, float), "boolean": bool, "object": dict, "null": type(None)}
@@ -289,7 +290,8 @@ def test_a_command_writes_the_fields_of_the_page(section, folder):
 def test_every_command_with_json_has_a_page():
     texts = [path.read_text() for path in (ROOT / "amalthea_uros" / "cli").glob("*.py")]
     commands = [part for text in texts for part in text.split('@click.command("')[1:]]
-    with_json = {part.partition('"')[0] for part in commands if "@output_option(" in part.partition("\ndef ")[0]}
+    results = {part.partition('"')[0]: re.search(r'@output_option\("(\w+)"', part.partition("\ndef ")[0]) for part in commands}
+    with_json = {command for command, result in results.items() if result and "json" in formats_for(result[1])}
     assert with_json == {section.removeprefix("amuros ") for section in RUNS}
 
 

@@ -245,11 +245,14 @@ class CallSite:
     def _until(self) -> MultiframeDemand:
         """What jobs execute until the end of the call."""
         context = self.solution.context
-        return context.demand_model.of_position(self.position, context.scheduled[self.process.name].core, including=True)
+        return context.execution_model(self.process.name).of_position(
+            self.position, context.scheduled[self.process.name].core, including=True
+        )
 
     def _demand(self, activities: Sequence[Activity]) -> MultiframeDemand:
         context = self.solution.context
-        return context.demand_model.of_activities(self.process, activities, context.scheduled[self.process.name].core)
+        name = self.process.name
+        return context.execution_model(name).of_activities(self.process, activities, context.scheduled[name].core)
 
 
 def _unknown(name: str, process: Process, reason: str, deadline: Time | None = None) -> CallbackResult:

@@ -85,7 +85,8 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fr
     load, regular = _load(names, core, solution), _never_suppressed(names, solution)
     if regular != names:
         return _load(regular, core, solution).best, None, load.worst
-    has_mean = all(states_mean(item.process, context.system) for item in here)
+    polling = any(item.name in context.waiting and context.waiting[item.name].polls for item in here)
+    has_mean = not polling and all(states_mean(item.process, context.system) for item in here)
     return load.best, load.mean if has_mean else None, load.worst
 
 
@@ -93,12 +94,15 @@ def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
     """The load of a core by some of its processes."""
     context = solution.context
     demands = {name: _demand(name, context) for name in names}
-    return CoreLoad(core, demands, context.activations, context.demand_model).load(solution.external_rates)
+    # What triggers the processes of a core need not be on it.
+    model = context.executing if context.waiting else context.demand_model
+    return CoreLoad(core, demands, context.activations, model).load(solution.external_rates)
 
 
 def _demand(name: str, context: TimingContext) -> MultiframeDemand:
-    """The demand of a job of a process with what its scheduler needs to decide when it is activated."""
-    own, decision = context.demands[name], context.decisions.get(name)
+    """The demand of a job of a process with what its scheduler needs to decide when it is activated, and with what it polls."""
+    waiting, decision = context.waiting.get(name), context.decisions.get(name)
+    own = context.demands[name] if waiting is None or waiting.polls else waiting.demand
     return own if decision is None else MultiframeDemand((*own.frames, *decision.frames))
 
 

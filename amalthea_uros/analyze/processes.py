@@ -37,10 +37,15 @@ def process_result(name: str, solution: Solution, executor: ExecutorResult | Non
     process, demand = context.system.processes[name], context.stated_demand(name)
     placement = context.placement(name)
     time_base = context.demand_model.time_base(placement.core) if placement.core else 1
+    migrating = solution.migrating.get(name)
+    if migrating is not None:
+        response, demand, time_base = migrating.response, migrating.demand, migrating.time_base
     # Iterations, and what they send, can be later than any time that is stated.
     iterates = activated_with(name, context) is not None
     is_stated = response is None and not iterates and not _is_sent_by(name, context.system.executors)
     events = solution.event_models.get(name) or (context.stated_activations(name) if is_stated else None)
+    if migrating is not None:
+        events = migrating.events
     scheduled = context.scheduled.get(name)
     deadline = deadline_of(name, context)
     if deadline is not None and deadline.is_implicit:

@@ -27,6 +27,9 @@ from amalthea_uros.services.init import DEFAULT_BOARD, catalogue, example_names,
 #: Versions that can be written: older ones lack elements that a generated model needs.
 VERSIONS = [version for version in supported_versions() if version_key(version) >= (1, 2)]
 
+#: Tools that have a form of their own: those of `BuildTarget`.
+_TOOLS = ("inchron",)
+
 _ANOTHER_BOARD = "; for another controller omit --board, and set its frequency and cores in the file"
 _BOARDS, _EXAMPLES = known_platforms(), example_names()
 _description_argument = click.argument("description", type=INPUT, metavar="APP.YAML")
@@ -68,14 +71,21 @@ def init(target: Path, board: str | None, example: str | None, lists: bool, forc
 @click.option("--board", type=Offer(_BOARDS), help="Controller; default: none, its clock is to be filled in.")
 @_force_option
 def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: bool) -> None:
-    """Write an app.yaml from C or C++ sources that use rclc.
+    """Write an app.yaml from C or C++ sources that use rclc, or from a recording of ROS 2.
 
-    SRC are files, or folders that are searched for them. What the code cannot tell, such as execution times, becomes TODO in the
-    file: no other command accepts the file until these gaps are filled. Needs: pip install 'amuros[code]'.
+    SRC are files, or folders that are searched for them; this needs: pip install 'amuros[code]'. Or SRC is the folder of a recording of
+    ros2_tracing (CTF), of which the host is described. Values that SRC does not have become TODO in the file: no other command accepts
+    the file until these gaps are filled.
     """
     from amalthea_uros.services.import_code import import_code
+    from amalthea_uros.services.import_recording import import_recording, is_recording
 
-    result = import_code(sources, target, board=board, force=force)
+    if len(sources) == 1 and is_recording(sources[0]):
+        if board is not None:
+            raise click.UsageError("--board is for source code; a recording of ROS 2 is that of the host")
+        result = import_recording(sources[0], target, force=force)
+    else:
+        result = import_code(sources, target, board=board, force=force)
     show_findings(result.findings)
     if not is_stream(target):
         show_text(result)
@@ -97,6 +107,7 @@ def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: b
 @_platform_option
 @click.option("--force", is_flag=True, help="Without -o: also replace a model that was not built by amuros, or edited since.")
 @click.option("--bus", "with_bus", is_flag=True, help="Also write the CAN bus, as a core whose tasks are the messages.")
+@click.option("--for", "tool", type=click.Choice(_TOOLS), help="Put what its importer leaves out into a form that it converts.")
 @click.option("--compress", is_flag=True, help="Write a ZIP, as APP4MC does for big models.")
 @output_option("BuildResult")
 def build(
@@ -106,6 +117,7 @@ def build(
     platform: str | None,
     force: bool,
     with_bus: bool,
+    tool: str | None,
     compress: bool,
     outputs: tuple[Output, ...],
 ) -> None:
@@ -115,11 +127,14 @@ def build(
     static pools. All errors are reported in one run, with their locations; nothing is written then.
     """
     from amalthea_uros.services.build import build_file
+    from amalthea_uros.services.build_targets import BuildTarget
     from amalthea_uros.validate.settings import project_settings
 
     is_filter = target is None and description == STANDARD_INPUT
     outputs = beside_files(outputs, [("-o", STANDARD_OUTPUT if is_filter else target)])
-    result = build_file(description, target, version, platform, compress, force, with_bus=with_bus)
+    result = build_file(
+        description, target, version, platform, compress, force, with_bus=with_bus, tool=BuildTarget(tool) if tool else None
+    )
     show_findings(result.findings)
     show_summaries(result.model, project_settings(description).targets)
     write_outputs(outputs, result)

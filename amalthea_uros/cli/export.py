@@ -10,7 +10,7 @@ from uuid import uuid4
 
 import click
 
-from amalthea_uros._internal.files import STANDARD_OUTPUT
+from amalthea_uros._internal.files import STANDARD_OUTPUT, is_stream
 from amalthea_uros._version import __version__
 from amalthea_uros.cli.output import show_findings
 from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE
@@ -74,8 +74,13 @@ def _show_version(context: click.Context, _parameter: click.Parameter, value: bo
 @click.option("--stable-from-value", metavar="TEXT", help="Let the ids of objects depend on a text.")
 @click.option("--stable-from-hash", is_flag=True, help="Let them depend on the content of the files.")
 @click.option("--no-stable", is_flag=True, help="Let them be random.")
+@click.option(
+    "-m", "--mapping", type=OUTPUT_FILE, metavar="FILE", help="Also write which object of the model became which one."
+)
+@click.option("--no-memory-accesses", is_flag=True, help="Leave out memories, caches, interconnects and ports.")
 @click.option("--stable", is_flag=True, expose_value=False, hidden=True)
 @click.option("--relax", is_flag=True, expose_value=False, hidden=True)
+@click.option("--pedantic", is_flag=True, expose_value=False, hidden=True)
 @click.option("-Q", "is_dry", is_flag=True, hidden=True)
 def export(
     paths: tuple[Path, ...],
@@ -84,6 +89,8 @@ def export(
     stable_from_value: str | None,
     stable_from_hash: bool,
     no_stable: bool,
+    mapping: Path | None,
+    no_memory_accesses: bool,
     is_dry: bool,
 ) -> None:
     """Write models or an app.yaml as a project of INCHRON's chronSUITE (.iprx).
@@ -96,16 +103,22 @@ def export(
     'export --importer -o %t %f %F'.
     """
     from amalthea_uros.services import export as service
+    from amalthea_uros.services.project_ids import hashed, valued
 
+    if is_importer and mapping is not None and (target is None or is_stream(target)):
+        click.echo("[amuros] Error: a mapping is between files: write the project to a file, too, by -o", err=True)
+        sys.exit(_WRONG_USE)
     ids = NAMESPACE
     if stable_from_value is not None:
-        ids = service.valued(stable_from_value)
+        ids = valued(stable_from_value)
     elif stable_from_hash:
-        ids = service.hashed(paths)
+        ids = hashed(paths)
     elif no_stable:
         ids = uuid4()
     try:
-        result = service.export(paths, target or STANDARD_OUTPUT, ids, write=not is_dry)
+        result = service.export(
+            paths, target or STANDARD_OUTPUT, ids, mapping=mapping, with_memories=not no_memory_accesses, write=not is_dry
+        )
     except AmurosError as error:
         if not is_importer:
             raise

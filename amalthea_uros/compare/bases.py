@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.compare.naming import Target
 from amalthea_uros.compare.phases import systems_in_phases
 from amalthea_uros.measure.series import MeasuredKind
@@ -18,7 +19,11 @@ def bases(system: System, settings: Settings) -> Callable[[Target], Basis]:
     are_phases_open = systems_in_phases(system, settings) is None
     stated = StatedDistributions(with_first_arrivals(system, settings.phases), settings, are_phases_open)
 
+    of_host = system.host.callback_names | receptions(system.host).keys()
+
     def basis_of(target: Target) -> Basis:
+        if target.name in of_host and target.name not in system.runnables and target.name not in system.chains:
+            return Basis()  # only bounds are predicted of it
         match target.kind:
             case MeasuredKind.CHAIN:
                 return stated.of_chain(target.name)

@@ -78,7 +78,7 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
         runs = simulate_measured(system, settings, options.duration or measurement.duration or SECOND, options.seed)
     simulation = runs[0].simulation if runs else None
     in_phases = () if analysis is None or runs else analyses_in_phases(analysis, system, settings)
-    predictor = Predictor(analysis=analysis, runs=runs, in_phases=in_phases, overheads=options.overheads)
+    predictor = Predictor(analysis=analysis, host=system.host, runs=runs, in_phases=in_phases, overheads=options.overheads)
     uncertainty = measurement.resolution if options.uncertainty is None else options.uncertainty
     rule = Rule(
         tolerance=options.tolerance,

@@ -6,10 +6,11 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.similar import did_you_mean
+from amalthea_uros.compare.measured.receptions import ARROW, receptions
 from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.baselines import with_baseline
-from amalthea_uros.measure.begins import BEGINS, END_OF_WAIT, FROM_ACTIVATION, ChainBegin, ModelBegins
+from amalthea_uros.measure.begins import ACTIVATION, END_OF_WAIT, FROM_ACTIVATION, ChainBegin, ModelBegins, begin_name
 from amalthea_uros.measure.series import WHOLE_TIME, MeasuredKind, Measurement, Series, TimeStatistics
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
@@ -22,6 +23,7 @@ EXAMPLE = "'executor + control=Control_Function.response_time'"
 _SUM = " + "
 #: The quantity of an interval between two markers, of which nothing else is known.
 _DURATION = "duration"
+_WITHOUT_PREEMPTION = (JobMetric.NET_EXECUTION_TIME, JobMetric.RUNNING_TIME)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +114,10 @@ def targets(
     """
     _check(measurement, names, system)
     found = []
+    is_scheduled = any(series.kind is MeasuredKind.PROCESS for series in measurement.series)
     for target in _targets(measurement, names, system):
+        if not is_scheduled and target.name in system.host.callback_names and target.quantity in _WITHOUT_PREEMPTION:
+            target = replace(target, reason="the scheduler was not recorded, so that preemption is part of it")
         is_included = bool({"", target.name} & set(with_overhead))
         if is_included and target.kind is MeasuredKind.PROCESS and target.series.baseline is not None:
             target = replace(target, series=with_baseline(target.series), is_with_baseline=True)
@@ -138,9 +143,9 @@ def _other_begin(target: Target, begins: ModelBegins) -> str:
     modelled: ChainBegin = begins.chains.get(target.name, EventKind.ACTIVATE)
     if target.kind is MeasuredKind.CHAIN and isinstance(modelled, str):
         return modelled
-    expected = BEGINS[EventKind.ACTIVATE]
+    expected = ACTIVATION
     if target.kind is MeasuredKind.CHAIN and not isinstance(modelled, str):
-        expected = BEGINS[modelled]
+        expected = begin_name(modelled)
     elif target.name in begins.iterations:
         expected = END_OF_WAIT
     if measured == expected:
@@ -193,14 +198,23 @@ def _baselines(measurement: Measurement) -> set[str]:
 def _check(measurement: Measurement, names: Names, system: System) -> None:
     require("object of the trace", names.renamed, dict.fromkeys(series.name for series in measurement.series))
     handles = (handle.name for executor in system.executors for handle in executor.handles)
-    known = dict.fromkeys((*system.processes, *system.chains, *system.runnables, *handles))
+    known = dict.fromkeys((*_all_names(system), *handles))
     require("process, chain or runnable", (*names.renamed.values(), *(each.object for each in names.meanings)), known)
 
 
 def _kinds(name: str, system: System) -> list[MeasuredKind]:
     """What the model has of a name."""
     found = {MeasuredKind.PROCESS: system.processes, MeasuredKind.CHAIN: system.chains, MeasuredKind.RUNNABLE: system.runnables}
-    return [kind for kind, items in found.items() if name in items]
+    of_host = {MeasuredKind.RUNNABLE} if name in system.host.callback_names else set()
+    if ARROW in name and name in receptions(system.host):
+        of_host.add(MeasuredKind.CHAIN)
+    return [kind for kind, items in found.items() if name in items or kind in of_host]
+
+
+def _all_names(system: System) -> dict[str, None]:
+    """The names of everything that can be compared."""
+    of_host = (*receptions(system.host), *system.host.callback_names)
+    return dict.fromkeys((*system.processes, *system.chains, *system.runnables, *of_host))
 
 
 def _in_model(name: str, system: System) -> str:
@@ -215,8 +229,10 @@ def _named(series: Series, name: str, system: System) -> Target:
     name = _in_model(name, system)
     kinds = _kinds(name, system)
     target = Target(series=series, kind=series.kind, name=name, quantity=series.quantity)
+    if not kinds and any(name == executor.name for executor in system.host.executors):
+        return replace(target, reason="it is an executor of the host, of which the callbacks are compared")
     if not kinds:
-        known = dict.fromkeys((*system.processes, *system.chains, *system.runnables))
+        known = _all_names(system)
         return replace(target, reason=f"the model has no {name!r}; {_advice(series, name, known)}", is_unknown=True)
     if series.kind is MeasuredKind.INTERVAL:
         if series.quantity == _DURATION:

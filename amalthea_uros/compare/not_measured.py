@@ -15,6 +15,7 @@ from amalthea_uros.simulate.results import Simulation
 _NOT_IN_TRACE = {
     MeasuredKind.PROCESS: "the trace has no process of this name",
     MeasuredKind.CHAIN: "the trace has no values of this chain",
+    MeasuredKind.RUNNABLE: "the trace has no call of this callback",
 }
 
 
@@ -41,9 +42,11 @@ def _share_unanswered(target: Target, simulation: Simulation | None) -> Fraction
 
 
 def not_measured(system: System, targets: Sequence[Target], begins: ModelBegins) -> Iterator[ComparisonRow]:
-    """A row for each process and chain of which the trace has nothing, or nothing of the same definition."""
+    """A row for each process, chain, and callback of a host of which the trace has nothing, or nothing of the same definition."""
     measured = {(target.kind, target.name) for target in targets}
-    for kind, names in ((MeasuredKind.PROCESS, system.processes), (MeasuredKind.CHAIN, system.chains)):
+    of_host = [callback.name for callback in system.host.callbacks]
+    kinds = {MeasuredKind.PROCESS: system.processes, MeasuredKind.CHAIN: system.chains, MeasuredKind.RUNNABLE: of_host}
+    for kind, names in kinds.items():
         for name in names:
             if (kind, name) not in measured:
                 yield ComparisonRow(

@@ -16,9 +16,11 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import Metric
 from amalthea_uros.compare.agreement import Prediction, measured_values
+from amalthea_uros.compare.host import HostPredictor
 from amalthea_uros.compare.results import PredictionClaim, Statistic
 from amalthea_uros.compare.simulated import Run
 from amalthea_uros.measure.series import MeasuredKind, TimeStatistics
+from amalthea_uros.perf.host import Host
 from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
@@ -69,6 +71,7 @@ class Predictor:
     Attributes
     ----------
     analysis : None if it is not asked
+    host : of the system, about which the analysis is asked
     runs : simulations, the first one as long as the measurement; none if they are not asked
     in_phases : the analyses that predict means, in each phase that is possible; none if simulations predict them
     overheads : process -> what is added to its predicted times; "" stands for all others
@@ -76,6 +79,7 @@ class Predictor:
 
     analysis: Analysis | None
     runs: tuple[Run, ...]
+    host: Host
     in_phases: tuple[Analysis, ...] = ()
     overheads: Mapping[str, Time] = field(default_factory=dict)
 
@@ -100,6 +104,7 @@ class Predictor:
         if self.analysis is None:
             return
         yield from _extremes(_of(self.analysis, kind, name, quantity))
+        yield from HostPredictor(self.host, self.analysis.host).of(kind, name, quantity).items()
         means = [_of(each, kind, name, quantity).get(Statistic.MEAN) for each in self.in_phases]
         known = [each for each in means if each is not None]
         # The bound of a mean is no prediction of it.
@@ -149,6 +154,7 @@ class Predictor:
             yield from (each.reason for each in analysis.processes if (kind, each.name) == (MeasuredKind.PROCESS, name))
             yield from (each.reason for each in analysis.callbacks if (kind, each.name) == (MeasuredKind.RUNNABLE, name))
             yield from (each.reason for each in analysis.chains if (kind, each.name) == (MeasuredKind.CHAIN, name))
+            yield HostPredictor(self.host, analysis.host).reason(kind, name)
         if self.runs:
             yield from (
                 each.reason for each in self.runs[0].simulation.chains if (kind, each.name) == (MeasuredKind.CHAIN, name)

@@ -16,7 +16,7 @@ from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.orders import keep_orders
 from amalthea_uros.inchron_bridge.basics.seals import seal_all
 from amalthea_uros.inchron_bridge.tables.chains import build_chains
-from amalthea_uros.inchron_bridge.tables.hardware import build_hardware
+from amalthea_uros.inchron_bridge.tables.hardware import build_hardware, leave_out_memories
 from amalthea_uros.inchron_bridge.tables.hardware_back import HARDWARE, extract_hardware
 from amalthea_uros.inchron_bridge.tables.os import build_systems
 from amalthea_uros.inchron_bridge.tables.requirements import build_requirements
@@ -48,6 +48,8 @@ def build_project(
     system: System,
     details: AmaltheaDetails | None = None,
     iterations: Mapping[str, tuple[Time, Time]] = MappingProxyType({}),
+    *,
+    with_memories: bool = True,
 ) -> ProjectBuild:
     """The project of a system.
 
@@ -55,6 +57,7 @@ def build_project(
     ----------
     details : what an AMALTHEA model says beyond the system
     iterations : the shortest and the longest time between two iterations of executors, by the stimuli that stand for them
+    with_memories : with memories, caches, interconnects and ports, through which accesses would take time
 
     Raises
     ------
@@ -74,6 +77,8 @@ def build_project(
     build_chains(context)
     build_requirements(context)
     _keep_middleware(context)
+    if not with_memories:
+        leave_out_memories(context.model)
     _keep_lists(context)
     link_opposites(context.model)
     seal_all(context.model)
@@ -95,7 +100,8 @@ def _keep_lists(context: Exporting) -> None:
     keep_list(model, "clocks", system.stimuli.clocks)
     keep_list(model, "events", system.events.events)
     keep_list(model, "chains", [chain for chain in system.events.chains if context.find("EventGraph", chain.name) is None])
-    placed = [each for each in system.mapping.placements if each.element not in system.labels or each.address]
+    stored = {item.name for item in model.walk() if item.kind == "memory.DataObject" and item["memory"] is not None}
+    placed = [each for each in system.mapping.placements if each.element not in stored or each.address]
     keep_list(model, "placements", placed)
     keep_orders(model, system)
     if extract_hardware(Importing(model), model) != system.hardware:

@@ -9,8 +9,13 @@ from amalthea_uros.inchron.project import Project
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.orders import in_kept_order
 from amalthea_uros.inchron_bridge.tables.chains_back import EventsReader
-from amalthea_uros.inchron_bridge.tables.hardware_back import core_frequency, extract_hardware
-from amalthea_uros.inchron_bridge.tables.os_back import Dispatch, extract_systems, processes_of
+from amalthea_uros.inchron_bridge.tables.hardware_back import (
+    core_frequency,
+    cores_beside,
+    extract_hardware,
+    loads_of_processors,
+)
+from amalthea_uros.inchron_bridge.tables.os_back import extract_systems, processes_of
 from amalthea_uros.inchron_bridge.tables.requirements_back import extract_constraints
 from amalthea_uros.inchron_bridge.tables.software_back import (
     extract_placements,
@@ -63,7 +68,8 @@ def _system(context: Importing, model: ProjectObject) -> System:
     dispatch = extract_systems(context, model)
     software = extract_software(context, model, stimuli.of_process)
     events = EventsReader(context, model)
-    result = events.read()
+    events.read()
+    constraints = extract_constraints(context, model, events)
     system = System(
         hardware=hardware,
         os=Os(
@@ -78,10 +84,11 @@ def _system(context: Importing, model: ProjectObject) -> System:
             isrs=tuple(dispatch.isrs),
             placements=extract_placements(context, model),
         ),
-        events=result,
-        constraints=extract_constraints(context, model, events),
+        events=events.events_and_chains(),
+        constraints=constraints,
     )
-    return _with_unknown(in_kept_order(_with_middleware(system, context, model), context.noted(model)), dispatch)
+    system = in_kept_order(_with_middleware(system, context, model), context.noted(model))
+    return _with_unknown(system, context, [*dispatch.unknown, *loads_of_processors(model)])
 
 
 def _with_middleware(system: System, context: Importing, model: ProjectObject) -> System:
@@ -97,14 +104,16 @@ def _with_middleware(system: System, context: Importing, model: ProjectObject) -
     return replace(system, executors=tuple(executors), network=replace(network, transmissions=tuple(transmissions)))
 
 
-def _with_unknown(system: System, dispatch: Dispatch) -> System:
-    """The system with a task of unknown demand on all cores for each thing that executes something not understood.
+def _with_unknown(system: System, context: Importing, items: list[ProjectObject]) -> System:
+    """The system with a task of unknown demand for each thing that executes something not understood.
 
-    Without it, response times of the others would not include what it takes of their cores.
+    Without it, response times of the others would not include what it takes of their cores: those of the processor that it belongs
+    to, or else all.
     """
-    for item in dispatch.unknown:
-        name = f"unknown_{item.kind.rpartition('.')[2]}_{item.name}"
-        cores = tuple(system.cores)
+    for item in items:
+        name = context.name("Process", item, f"unknown_{item.kind.rpartition('.')[2]}_{item.name}")
+        own = cores_beside(item)
+        cores = tuple(system.cores) if own is None else tuple(filter(None, (context.name_of("CpuCore", core) for core in own)))
         stimulus = Custom(name=name, description=f"{item.kind} is not understood")
         task = Task(name=name, stimuli=(name,), activities=(Incomplete(reason=f"{item.kind} {item.name!r} is not understood"),))
         scheduler = Scheduler(name=name, policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=cores)

@@ -13,6 +13,7 @@ from amalthea_uros.judge.causes import Failing, FailureCause, causes, processes_
 from amalthea_uros.judge.margins import Limited, share_left, tightest
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.demand.quantiles import quantile_condition
 
 
 class JudgedItem(Limited, Failing, Protocol):
@@ -76,6 +77,7 @@ class Summary(Generic[J, C]):
     overloaded : the cores with more work than they can execute, as far as no process on them shows it
     causes : the failures by their root causes, each once
     tightest : the one that is met with the smallest share of its limit left; None if there is none
+    condition : under which what is met is met, although it need not always hold; "" if there is none
     """
 
     judged: int
@@ -84,6 +86,7 @@ class Summary(Generic[J, C]):
     overloaded: tuple[C, ...]
     causes: tuple[FailureCause[J, C], ...]
     tightest: J | None
+    condition: str = ""
 
     @property
     def schedulable(self) -> Schedulable:
@@ -117,4 +120,5 @@ def summarize(cores: Iterable[C], judged: Sequence[J], context: TimingContext) -
         overloaded=overloaded,
         causes=causes(overloaded, failing, unknown, lambda limit: processes_of(limit, context)),
         tightest=tightest(item for item in judged if item.verdict is Verdict.MET),
+        condition="" if context.settings.quantile is None else quantile_condition(context.settings.quantile),
     )

@@ -14,12 +14,19 @@ ChainBegin: TypeAlias = "EventKind | str"
 ACTIVATION = "activation"
 #: With what jobs and chains begin, in words.
 BEGINS = {EventKind.ACTIVATE: ACTIVATION, EventKind.START: "start"}
+#: The same of a chain that begins with its first step, and not with the job that makes it.
+FIRST_STEP = "first step"
 #: The same of an iteration of an executor that spins in a loop: its job begins with a wait for messages.
 END_OF_WAIT = "end of the wait"
 #: The quantities of jobs that begin at the activation.
 FROM_ACTIVATION = frozenset(
     (JobMetric.RESPONSE_TIME, JobMetric.INITIAL_PENDING_TIME, JobMetric.PREEMPTION_TIME, JobMetric.ACTIVATE_TO_ACTIVATE)
 )
+
+
+def begin_name(event: EventKind) -> str:
+    """With what a chain begins, in words."""
+    return BEGINS.get(event, FIRST_STEP)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

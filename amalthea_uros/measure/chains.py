@@ -18,7 +18,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros._internal.records import dataclass, field, replace
-from amalthea_uros.measure.begins import BEGINS, ChainBegin
+from amalthea_uros.measure.begins import BEGINS, ChainBegin, begin_name
 from amalthea_uros.measure.pairing import counted_on, lost_numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity
@@ -180,11 +180,13 @@ class ChainSteps:
 
     Attributes
     ----------
-    starts : of chains that do not begin with the activation of a job: with which event they do, or why they are not measured
+    starts : of chains that do not begin as usual: with which event they do, or why they are not measured
+    usual : with which event the others do
     ambiguous : the chains with several routes, which are not measured
     """
 
     starts: Mapping[str, ChainBegin] = field(default_factory=dict)
+    usual: EventKind = EventKind.ACTIVATE
     gaps: int = 0
     ambiguous: list[str] = field(default_factory=list)
     _steps: list[Numbers] = field(default_factory=list)
@@ -210,19 +212,19 @@ class ChainSteps:
         steps = np.concatenate(self._steps, axis=1)
         for number in np.unique(steps[1]).tolist():
             name = names[number]
-            begin = self.starts.get(name, EventKind.ACTIVATE)
+            begin = self.starts.get(name, self.usual)
             if isinstance(begin, str):
                 continue
             found = self._ends(steps[:, steps[1] == number], begin)
             if found.has_several_routes:
                 self.ambiguous.append(name)
             else:
-                yield from (replace(each, begin=BEGINS[begin]) for each in _latencies(name, found, begin))
+                yield from (replace(each, begin=begin_name(begin)) for each in _latencies(name, found, begin))
 
     def _ends(self, steps: Numbers, begin: EventKind) -> _ChainEnds:
         time, _, stimulus, step, segment, job = steps
         is_first, is_last = step == 0, step == step.max()
-        begun, is_known = self._begun(begin, job)
+        begun, is_known = (time, np.zeros(len(job), bool)) if begin not in BEGINS else self._begun(begin, job)
         if is_known[is_first].any():
             # A step without it is at the edge of the trace, or events are missing: the chain began earlier.
             is_first &= is_known
@@ -252,7 +254,8 @@ def _latencies(name: str, steps: _ChainEnds, begin: EventKind) -> Iterator[Serie
     for here in np.split(order, np.flatnonzero(np.diff(steps.segment[order])) + 1):
         is_response, stimulus = steps.is_response[here], steps.stimulus[here]
         found.add(is_response, steps.time[here], _in_order(is_response, stimulus))
-    method = f"from the {BEGINS[begin]} of the job with the first step to the last step, by the number of the stimulus"
+    first = f"{begin_name(begin)}{' of the job with the first step' if begin in BEGINS else ''}"
+    method = f"from the {first} to the last step, by the number of the stimulus"
     yield from found.series(name, Counts(incomplete=found.unanswered), method, BY_NUMBER)
 
 

@@ -52,6 +52,17 @@ def time_of(value: int) -> Time:
     return Time(value=value // TIMES[unit], unit=unit)
 
 
+def in_one_unit(*times: Time) -> bool:
+    """State times in the finest of their units, in which all are whole numbers; returns whether all of them have one."""
+    values = [picoseconds(time) for time in times]
+    unit = min((time.unit for time in times if time.unit in TIMES), key=TIMES.__getitem__, default=None)
+    if unit is None or None in values:
+        return False
+    for time, value in zip(times, values, strict=True):
+        time.value, time.unit = (value or 0) // TIMES[unit], unit
+    return True
+
+
 def frequency_of(value: Fraction) -> Frequency | None:
     """Hertz in the largest unit in which it is at least 1; None if it has no exact decimal representation."""
     for unit, size in FREQUENCIES.items():

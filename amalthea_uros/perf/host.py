@@ -149,3 +149,8 @@ class Host(Brief):
     def callbacks(self) -> tuple[HostCallback, ...]:
         """The callbacks of all executors."""
         return tuple(callback for executor in self.executors for callback in executor.callbacks)
+
+    @property
+    def callback_names(self) -> frozenset[str]:
+        """The names of the callbacks."""
+        return frozenset(callback.name for callback in self.callbacks)

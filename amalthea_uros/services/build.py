@@ -14,6 +14,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
+from amalthea_uros.services.build_targets import BuildTarget, system_for
 from amalthea_uros.services.files import refuse
 from amalthea_uros.uros.assemble import Assembly
 
@@ -29,12 +30,14 @@ class BuildResult(Brief, Shown):
     Attributes
     ----------
     description : the file
-    assembly : the system of the model, with the decisions and findings of its assembly
+    assembly : the system of the description, with the decisions and findings of its assembly
+    changes : what has another form in the model, for the tool that it is for
     """
 
     description: Path
     model: Model
     assembly: Assembly
+    changes: tuple[Finding, ...] = ()
 
     @property
     def document(self) -> Document:
@@ -43,8 +46,8 @@ class BuildResult(Brief, Shown):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Warnings and notes about the description, except those that comments in it accept."""
-        return unsuppressed(self.assembly.findings)
+        """Warnings and notes about the description and the model, except those that comments in it accept."""
+        return unsuppressed((*self.assembly.findings, *self.changes))
 
 
 def describe(path: StrPath, platform: str | None = None) -> Assembly:
@@ -80,7 +83,14 @@ def system_with_bus(assembly: Assembly, path: StrPath) -> System:
     return system
 
 
-def build(path: StrPath, version: str | None = None, platform: str | None = None, *, with_bus: bool = False) -> BuildResult:
+def build(
+    path: StrPath,
+    version: str | None = None,
+    platform: str | None = None,
+    *,
+    with_bus: bool = False,
+    tool: BuildTarget | None = None,
+) -> BuildResult:
     """The AMALTHEA model of an `app.yaml`.
 
     Parameters
@@ -88,6 +98,7 @@ def build(path: StrPath, version: str | None = None, platform: str | None = None
     version : AMALTHEA version from 1.2.0 on; the newest one if none is given
     platform : replaces the platform that the file names
     with_bus : also with the CAN bus, if it is not a part of the system anyway
+    tool : a tool for which the model is written in a form that it converts
 
     Raises
     ------
@@ -100,7 +111,8 @@ def build(path: StrPath, version: str | None = None, platform: str | None = None
     with paused_garbage_collection():
         assembly = describe(path, platform)
         system = system_with_bus(assembly, path) if with_bus else assembly.system
-        return BuildResult(description=Path(path), model=build_model(system, version), assembly=assembly)
+        system, changes = system_for(tool, system, version)
+        return BuildResult(description=Path(path), model=build_model(system, version), assembly=assembly, changes=changes)
 
 
 def build_file(
@@ -112,13 +124,14 @@ def build_file(
     force: bool = False,
     *,
     with_bus: bool = False,
+    tool: BuildTarget | None = None,
 ) -> BuildResult:
     """Build the AMALTHEA model of an `app.yaml` and write it.
 
     Parameters
     ----------
     target : the file to write; None: beside the description, with the suffix `.amxmi`, or standard output for standard input
-    version, platform, with_bus : as for `build`
+    version, platform, with_bus, tool : as for `build`
     compress : write a ZIP
     force : without a target, also replace a model that this function would not write
 
@@ -129,7 +142,7 @@ def build_file(
     """
     from amalthea_uros.xmi.save import save
 
-    result = build(path, version, platform, with_bus=with_bus)
+    result = build(path, version, platform, with_bus=with_bus, tool=tool)
     result.document.path = _beside(Path(path), force) if target is None else Path(target)
     save(result.model, compress=compress)
     return result

@@ -14,14 +14,14 @@ from amalthea_uros.services.files import save_new
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportResult:
-    """A description that was made of source code.
+    """A description that was made of source code or of a recording.
 
     Attributes
     ----------
     path : the file that was written, None if it was not
     text : its content
     gaps : number of values to fill in
-    findings : flaws of the code, and what was not understood
+    findings : flaws of what was read, and what was not understood
     """
 
     path: Path | None
@@ -47,17 +47,23 @@ def import_code(
     ReadError : the sources cannot be read, or the parsers are not installed.
     WriteError : the file exists, or cannot be written.
     """
-    from amalthea_uros.source.description import GAP, description_text
+    from amalthea_uros.source.description import description_text
     from amalthea_uros.source.files import read_sources
     from amalthea_uros.source.read import read_facts
     from amalthea_uros.spec.middleware import option_units
 
     given = [Path(paths)] if isinstance(paths, str | PathLike) else [Path(path) for path in paths]
     file = None if target is None else Path(target)
-    facts = read_facts(read_sources(given))
+    facts = read_facts(read_sources(given), board)
     name = given[0].resolve().stem if given else "app"
     text = description_text(facts, name.strip() or "app", board, option_units())
     if file is not None:
         save_new({file: text}, force=force)
-    gaps = sum(line.partition(" #")[0].count(f": {GAP}") for line in text.splitlines())
-    return ImportResult(path=file, text=text, gaps=gaps, findings=tuple(dict.fromkeys(facts.findings)))
+    return ImportResult(path=file, text=text, gaps=count_gaps(text), findings=tuple(dict.fromkeys(facts.findings)))
+
+
+def count_gaps(text: str) -> int:
+    """The number of values to fill in."""
+    from amalthea_uros.source.description import GAP
+
+    return sum(line.partition(" #")[0].count(f": {GAP}") for line in text.splitlines())

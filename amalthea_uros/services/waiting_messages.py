@@ -70,7 +70,7 @@ def waiting_messages(assembly: Assembly, analysis: Analysis | None = None) -> Wa
         kept = f"all that are kept for {' and '.join(unbounded)}, whose response time has no bound"
         return WaitingMessages(most=max(needed), why=kept if unbounded else "as many as the analysis finds")
     # What nobody knows to be unnecessary is kept.
-    most = max(*needed, *described, kept_messages(assembly.description.application))
+    most = max(*needed, *described, kept_messages(assembly.description.application, assembly.profile.middleware))
     why = f"no number is known to be enough because of {' and '.join(periodic or unbounded)}"
     return WaitingMessages(most=most, why=why)
 

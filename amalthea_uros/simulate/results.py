@@ -55,6 +55,7 @@ class Simulation(Shown):
     duration : model time
     left_out : the processes that are not simulated, each with the reason
     executors : those that loop
+    host : the executors of the host, if it is simulated
     losses : the messages on wires of which it is stated how many they lose
     runnables : those that requirements limit
     labels : those that were asked for
@@ -72,6 +73,7 @@ class Simulation(Shown):
     left_out: Results[ProcessObservation] = field(default_factory=Results)
     chains: Results[ChainObservation] = field(default_factory=Results)
     executors: Results[ExecutorObservation] = field(default_factory=Results)
+    host: Results[ExecutorObservation] = field(default_factory=Results)
     losses: Results[LossObservation] = field(default_factory=Results)
     runnables: Results[RunnableObservation] = field(default_factory=Results)
     labels: Results[LabelObservation] = field(default_factory=Results)
@@ -106,6 +108,7 @@ class Simulation(Shown):
         """What makes the observations incomplete: processes that were left out, a run that ended early or in which nothing happened."""
         found = tuple(finding.message for finding in self.findings if finding.severity is Severity.ERROR)
         is_idle = not any(process.jobs or process.unfinished for process in self.processes)
+        is_idle = is_idle and not any(executor.iterations for executor in self.host)
         return (IDLE, *found) if is_idle else found
 
     @property

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.source.boards import platform_of_board
 from amalthea_uros.source.facts import (
     CodeEntity,
     CodeEntityKind,
@@ -22,7 +23,6 @@ from amalthea_uros.source.facts import (
 )
 from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.names import CodeNames
-from amalthea_uros.source.platform import CUSTOM
 from amalthea_uros.units import SECOND, Time, time_text
 
 GAP = "TODO"
@@ -54,7 +54,7 @@ def description_text(facts: CodeFacts, name: str, board: str | None, options: Ma
         "# Imported from source code. Each TODO is a value that the code cannot tell: replace all of them, then run amuros check.",
         "amuros: 1",
         f"name: {quoted(name)}",
-        *_hardware(board),
+        *_hardware(facts, board),
         *_os(facts),
         "middleware:",
         *(f"  {line}" for line in _middleware(facts, names, options)),
@@ -73,7 +73,11 @@ def quoted(text: str) -> str:
 def _at(place: Location | None, note: str = "") -> str:
     """A comment with the place of a value."""
     where = f"{Path(place.path).name}:{place.line}" if place is not None else ""
-    text = "; ".join(filter(None, (where, note)))
+    return remark("; ".join(filter(None, (where, note))))
+
+
+def remark(text: str) -> str:
+    """A comment at the end of a line, "" if there is nothing to say."""
     return f" # {''.join(each if each.isprintable() else '?' for each in text)}" if text else ""
 
 
@@ -81,13 +85,17 @@ def _time(time: Time | None) -> str:
     return time_text(time) if time is not None else GAP
 
 
-def _hardware(board: str | None) -> Iterator[str]:
-    if board is not None:
-        yield f"hardware: {{platform: {quoted(board)}}}"
-        return
+def _hardware(facts: CodeFacts, board: str | None) -> Iterator[str]:
+    """The platform, and the clock that the build states, which replaces that of the platform."""
+    stated = platform_of_board(facts.board.value) if facts.board is not None else None
+    platform, place = (board, None) if board is not None or facts.board is None else (stated, facts.board.place)
+    note = "" if platform or place is None else "no platform of this board is known"
     yield "hardware:"
-    yield "  platform: generic"
-    yield f"  frequency: {GAP} # clock of the cores"
+    yield f"  platform: {quoted(platform or 'generic')}{_at(place, note)}"
+    if facts.clock is not None:
+        yield f"  frequency: {facts.clock.value} Hz{_at(facts.clock.place)}"
+    elif platform is None:
+        yield f"  frequency: {GAP} # clock of the cores"
 
 
 def _os(facts: CodeFacts) -> Iterator[str]:
@@ -100,6 +108,10 @@ def _os(facts: CodeFacts) -> Iterator[str]:
 
 
 def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) -> Iterator[str]:
+    if facts.ros is not None:
+        yield f"ros: {facts.ros.value}{_at(facts.ros.place)}"
+    if facts.port:
+        yield f"port: {facts.port}"
     executors = list(facts.executors.values())
     if len(executors) == 1 and not facts.senders:
         yield "executor:"
@@ -107,26 +119,19 @@ def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) 
     elif executors or facts.senders:
         yield "executors:"
         for executor in executors:
-            yield from _item(_executor(executor, facts, names), "  ")
+            yield from item_lines(_executor(executor, facts, names), "  ")
         for sender, name in zip(facts.senders, names.senders, strict=True):
-            yield from _item(_sender(sender, name, names), "  ")
+            yield from item_lines(_sender(sender, name, names), "  ")
     else:
         yield f"executor: {GAP} # none is initialised in these files"
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
     if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
         yield f"multithread: true{_at(option.place)}"
     yield from _transport(facts)
-    limits = [*_built_transport(facts), *_limits(facts, options)]
+    limits = list(_limits(facts, options))
     if limits:
         yield "limits:"
         yield from (f"  {line}" for line in limits)
-
-
-def _built_transport(facts: CodeFacts) -> Iterator[str]:
-    """The transport of the build, where the description would take that of the wire for it."""
-    is_udp = facts.transport is not None and facts.transport.key == "udp"
-    if is_udp and facts.port in CUSTOM and "RMW_UXRCE_TRANSPORT" not in facts.options:
-        yield f"RMW_UXRCE_TRANSPORT: custom # {facts.port} sends by functions of its own"
 
 
 def _limits(facts: CodeFacts, options: Mapping[str, str]) -> Iterator[str]:
@@ -192,7 +197,9 @@ def _thread(thread: Thread) -> Iterator[str]:
 
 def _is_of_other_loop(executor: CodeExecutor) -> bool:
     """Whether the description has its loop at another executor, the first one that spins in it."""
-    return bool(executor.spins) and executor.spins[0].executors[:1] not in ((), (executor.key,))
+    if not executor.spins or executor.spins[0].again is not None:
+        return False
+    return executor.spins[0].executors[:1] not in ((), (executor.key,))
 
 
 def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
@@ -200,6 +207,9 @@ def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
         yield f"loop: {GAP} # no call lets it spin"
         return
     spin = executor.spins[0]
+    if spin.again is not None:
+        yield f"loop: {GAP}{_at(spin.again.place, 'an executor spins more than once in an iteration, which a loop cannot have')}"
+        return
     if spin.kind is SpinKind.ENDLESS:
         is_default = executor.timeout_place is None
         time = Time(10**12) if is_default else executor.timeout
@@ -249,10 +259,11 @@ def _application(facts: CodeFacts, names: CodeNames) -> Iterator[str]:
         return
     yield "nodes:"
     for node in nodes:
-        yield from _item(_node(node, node is nodes[0], facts, names), "  ")
+        yield from item_lines(_node(node, node is nodes[0], facts, names), "  ")
 
 
-def _item(lines: Iterator[str], indent: str) -> Iterator[str]:
+def item_lines(lines: Iterator[str], indent: str) -> Iterator[str]:
+    """An item of a list in YAML, of the lines of its content."""
     for index, line in enumerate(lines):
         yield f"{indent}{'  ' if index else '- '}{line}"
 
@@ -265,14 +276,14 @@ def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) 
     if publishers:
         yield "publishers:"
         for publisher in publishers:
-            yield from _item(_publisher(publisher, facts), "  ")
+            yield from item_lines(_publisher(publisher, facts), "  ")
     handles = names.handle_by_entity
     for kind, key in _LISTS.items():
         entities = [each for each in own if each.kind is kind and each.key in handles]
         if entities:
             yield f"{key}:"
         for entity in entities:
-            yield from _item(_callback(entity, *handles[entity.key], facts, names), "  ")
+            yield from item_lines(_callback(entity, *handles[entity.key], facts, names), "  ")
     yield from _servers(node, own, facts, names)
 
 
@@ -288,9 +299,11 @@ def _size(key: str, kind: MessageType | None, facts: CodeFacts) -> str:
     length = length_of(kind, facts.types)
     if length is None:
         return f"{key}: {GAP}{_at(None, str(kind))}"
-    if not length.is_fixed:
+    if length.most is None:
         return f"{key}: {GAP}{_at(None, f'{kind}: {length.bytes} B with empty strings and sequences')}"
-    return f"{key}: {length.bytes} B{_at(None, str(kind))}"
+    return (
+        f"{key}: {length.most} B{_at(None, str(kind) if length.is_fixed else f'{kind} with the longest strings and sequences')}"
+    )
 
 
 def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
@@ -323,8 +336,8 @@ def _content(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
         case CodeEntityKind.ACTION_SERVER | CodeEntityKind.ACTION_CLIENT:
             if entity.kind is CodeEntityKind.ACTION_CLIENT:
                 yield f"action: {named}{_at(entity.place)}"
-            for key in ("goal_size", "result_size", "feedback_size"):
-                yield f"{key}: {GAP}{_at(None, str(entity.type or ''))}"
+            for suffix in ("Goal", "Result", "Feedback"):
+                yield _size(f"{suffix.lower()}_size", entity.type.part(suffix) if entity.type is not None else None, facts)
 
 
 def _outputs(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
@@ -333,7 +346,12 @@ def _outputs(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, names: Co
     for callback in callbacks:
         if callback.function is not None:
             used |= facts.publishes.get(callback.function.scope, {})
+    unknown = [place for each, place in used.items() if each not in facts.entities]
+    if unknown:
+        yield f"publishes: {GAP}{_at(unknown[0], 'with an object that is not understood')}"
     for key, kind in (("publishes", CodeEntityKind.PUBLISHER), ("requests", CodeEntityKind.CLIENT)):
+        if unknown and kind is CodeEntityKind.PUBLISHER:
+            continue
         found = [(facts.entities[each], place) for each, place in used.items() if each in facts.entities]
         values = [(_target(each, names), place) for each, place in found if each.kind is kind]
         if values:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from amalthea_uros._internal.ports import parameter_services
 from amalthea_uros.source.entities import callback_of
 from amalthea_uros.source.facts import (
     CodeCallback,
@@ -35,8 +36,6 @@ _ADDED: Mapping[str, tuple[CodeEntityKind, tuple[int, ...]]] = {
     "parameter_server": (CodeEntityKind.PARAMETER_SERVER, (2,)),
     "parameter_server_with_context": (CodeEntityKind.PARAMETER_SERVER, (2,)),
 }
-#: RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES of ros2/rclc rclc_parameter/rclc_parameter.h.
-_PARAMETER_SERVER_HANDLES = 6
 SPIN_KINDS = {
     "rclc_executor_spin": SpinKind.ENDLESS,
     "rclc_executor_spin_some": SpinKind.SOME,
@@ -86,7 +85,9 @@ def _add(facts: CodeFacts, call: FunctionCall, walk: CodeWalk) -> None:
         entity=entity.key,
         callbacks=tuple(callbacks),
         place=call.place,
-        count=_PARAMETER_SERVER_HANDLES if kind is CodeEntityKind.PARAMETER_SERVER else 1,
+        count=parameter_services(facts.ros.value if facts.ros is not None else None)
+        if kind is CodeEntityKind.PARAMETER_SERVER
+        else 1,
         message=message.core.text if message is not None and kind is CodeEntityKind.SUBSCRIPTION else "",
         always=kind is CodeEntityKind.SUBSCRIPTION and last is not None and last.resolved.text == "ALWAYS",
     )

@@ -178,6 +178,17 @@ class Spin:
         """Keys of the executors that spin in the same loop, in order, each once."""
         return tuple(dict.fromkeys(item.of for item in self.items if item.kind is CodeLoopKind.SPIN))
 
+    @property
+    def again(self) -> CodeLoopItem | None:
+        """The first item in which an executor spins that did already in the same iteration, or that is in a loop of its own."""
+        seen: set[str] = set()
+        for item in self.items:
+            if item.kind is CodeLoopKind.SPIN:
+                if item.of in seen or item.note:
+                    return item
+                seen.add(item.of)
+        return None
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeSender:
@@ -251,9 +262,17 @@ class CodeTransport:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeOption:
-    """A build option of the middleware."""
+    """A build option of the middleware; without a place it follows from the board that was named."""
 
     name: str
+    value: str
+    place: Location | None
+
+
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """A value of a file of a build system, with its place."""
+
     value: str
     place: Location
 
@@ -268,6 +287,7 @@ class CodeFacts:
     types : those that the application defines, with the types of their fields
     rtos : the operating system, "" if unknown
     port : how micro-ROS was brought to the controller, "" if unknown
+    ros, board, clock : distribution of ROS 2, name of the board, and clock in Hz, of files of the build system
     tick_rate : its ticks per second
     ticks_are_stated : whether that is more than a default of the port, which the build may change
     """
@@ -281,6 +301,9 @@ class CodeFacts:
     options: dict[str, CodeOption] = field(default_factory=dict)
     rtos: str = ""
     port: str = ""
+    ros: Stated | None = None
+    board: Stated | None = None
+    clock: Stated | None = None
     tick_rate: Fraction | None = None
     ticks_are_stated: bool = False
     findings: list[Finding] = field(default_factory=list)

@@ -18,9 +18,9 @@ _CPP = (".h", ".hpp", ".hh", ".cpp", ".cc", ".cxx", ".ino")
 SUFFIXES = (*_C, *_CPP)
 META = ".meta"
 #: Files that define messages and services of an application: `package/msg/Name.msg`.
-INTERFACES = (".msg", ".srv")
+INTERFACES = (".msg", ".srv", ".action", ".idl")
 #: Files of build systems that say something about the controller, by their names.
-BUILD_FILES = ("sdkconfig", "sdkconfig.defaults", "platformio.ini", "prj.conf")
+BUILD_FILES = ("sdkconfig", "sdkconfig.defaults", "platformio.ini", "prj.conf", "CMakeLists.txt", "library.properties")
 
 
 @dataclass(frozen=True, slots=True)

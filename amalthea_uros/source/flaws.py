@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.ports import known_ports
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
@@ -38,29 +39,13 @@ _POOLS = {
 }
 
 
-_BASICS = (
-    "RMW_UXRCE_MAX_NODES",
-    "RMW_UXRCE_MAX_PUBLISHERS",
-    "RMW_UXRCE_MAX_SUBSCRIPTIONS",
-    "RMW_UXRCE_MAX_SERVICES",
-    "RMW_UXRCE_MAX_CLIENTS",
-)
-#: Pools that a port is built with, where they are smaller, and how a finding calls that: the .meta files and Kconfig of
-#: micro-ROS/micro_ros_arduino, micro_ros_espidf_component and micro_ros_zephyr_module.
-_OF_PORT = {
-    "arduino": ("in the smallest of its prebuilt libraries", dict(zip(_BASICS, (1, 2, 1, 1, 1), strict=True))),
-    "espidf": ("by default in ESP-IDF", dict(zip(_BASICS, (1, 2, 2, 1, 1), strict=True))),
-    "zephyr": ("by default in Zephyr", dict(zip(_BASICS, (1, 1, 1, 1, 1), strict=True))),
-}
-
-
 def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """The findings about the application itself."""
     yield from _unchecked(walk.calls)
     yield from _pools(facts)
     yield from _never_called(facts)
     for executor in facts.executors.values():
-        yield from _handles(executor)
+        yield from _handles(executor, facts)
         yield from _waiting(executor)
         yield from _timers(executor, facts)
         yield from _triggers(executor)
@@ -68,6 +53,7 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     yield from _sleepless(facts, walk)
     yield from _blocking(facts, walk)
     yield from _pings(facts, walk)
+    yield from _never_again(facts, walk)
 
 
 def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
@@ -82,10 +68,13 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
     for name, (default, kinds) in _POOLS.items():
         used = [entity for entity in facts.entities.values() if entity.kind in kinds]
         option = facts.options.get(name)
-        by_default, sizes = _OF_PORT.get(facts.port, ("by default", {}))
+        port = known_ports().get(facts.port)
+        by_default, sizes = (port.pools_of or "by default", port.pools) if port is not None else ("by default", {})
         size = int(option.value) if option is not None and option.value.isdecimal() else sizes.get(name, default)
         if len(used) > size:
-            stated = f"in {option.place.path}" if option is not None else by_default if name in sizes else "by default"
+            stated = by_default if name in sizes else "by default"
+            if option is not None:
+                stated = f"in {option.place.path}" if option.place is not None else "for this board"
             message = f"{counted(len(used), kinds[0].value)} need {name}={len(used)}, which is {size} {stated}"
             if len(kinds) > 1:
                 message = f"the timers and guard conditions need {name}={len(used)}, which is {size} {stated}"
@@ -118,20 +107,25 @@ def _never_called(facts: CodeFacts) -> Iterator[Finding]:
                 yield Finding("IMP017", Severity.WARNING, message, handle.place, "Add it to the description by hand.")
 
 
-def _handles(executor: CodeExecutor) -> Iterator[Finding]:
+def _handles(executor: CodeExecutor, facts: CodeFacts) -> Iterator[Finding]:
     if executor.max_handles is None:
         message = f"the number of handles of '{executor.variable}' is not constant"
         yield Finding("IMP004", Severity.WARNING, message, executor.place, "Add max_handles to the description.")
         return
-    total = 0
+    total, servers = 0, 0
     for handle in executor.handles:
+        servers += facts.ros is None and handle.kind is CodeEntityKind.PARAMETER_SERVER
         total += handle.count
         if total > executor.max_handles:
             message = (
                 f"'{executor.variable}' is initialised with {counted(executor.max_handles, 'handle')}; this one exceeds them"
             )
             advice = f"Give rclc_executor_init {sum(each.count for each in executor.handles)}; else the callback never runs."
-            yield Finding("IMP006", Severity.ERROR, message, handle.place, advice)
+            severity = Severity.ERROR
+            if total - servers <= executor.max_handles:
+                # A parameter server had one handle less before iron.
+                message, severity = f"{message}, unless ROS 2 is humble or older", Severity.WARNING
+            yield Finding("IMP006", severity, message, handle.place, advice)
             return
 
 
@@ -196,6 +190,16 @@ def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
             )
+
+
+def _never_again(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    """Programs that do not notice a restart of the agent, after which the session and all entities are gone."""
+    first = next(iter(facts.executors.values()), None)
+    asks = any("ping_agent" in call.name for call in walk.calls)
+    if first is not None and any(spin.is_in_loop for spin in first.spins) and not asks:
+        message = "nothing asks whether the agent is still there: after its restart, nothing is sent or received any more"
+        advice = "Call rmw_uros_ping_agent now and then; without an answer, destroy everything and create it anew."
+        yield Finding("IMP026", Severity.INFO, message, first.spins[0].place, advice)
 
 
 def _sessions(facts: CodeFacts) -> Iterator[Finding]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
 from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind, Thread
@@ -53,7 +54,7 @@ def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall], threads: Mappin
     known = published | {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
     for call in calls:
         sender = call.argument(0)
-        is_sending = call.name in SENDS and sender is not None and sender.key in facts.entities
+        is_sending = call.name in SENDS and sender is not None
         if not is_sending or not is_repeated(call) or call.root is None or call.place in known:
             continue
         items = tuple(_items(facts, call, calls))
@@ -75,20 +76,22 @@ def _timeout(call: FunctionCall) -> Time | None:
 
 
 def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall]) -> Iterator[CodeLoopItem]:
-    """The items in the same loop, and not in another branch of a choice, such as another state."""
+    """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
     for call in calls:
-        if call.root is not spin.root or call.loops != spin.loops or call.excludes(spin):
+        if call.root is not spin.root or call.loops[: len(spin.loops)] != spin.loops or call.excludes(spin):
             continue
         item = _item(facts, call)
-        if item is not None:
-            yield item if call.always_with(spin) or item.kind not in _TIMED else _sometimes(item)
+        if item is None:
+            continue
+        if call.loops != spin.loops:
+            yield replace(item, time=None, note="in a loop of its own: how often per iteration is unknown")
+        elif call.always_with(spin) or item.kind not in _TIMED:
+            yield item
+        else:
+            yield replace(item, time=None, note="not in each iteration")
 
 
 _TIMED = (CodeLoopKind.SLEEP, CodeLoopKind.BUSY_WAIT)
-
-
-def _sometimes(item: CodeLoopItem) -> CodeLoopItem:
-    return CodeLoopItem(kind=item.kind, time=None, place=item.place, note="not in each iteration")
 
 
 def _item(facts: CodeFacts, call: FunctionCall) -> CodeLoopItem | None:

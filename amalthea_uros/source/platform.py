@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import NamedTuple
 
-from amalthea_uros.source.files import SourceFile
+from amalthea_uros.source.boards import has_freertos
+from amalthea_uros.source.build_files import BuildFacts
 from amalthea_uros.source.ports import FORMS
 from amalthea_uros.source.program import CodeProgram
 from amalthea_uros.source.walk import FunctionCall
@@ -25,12 +26,11 @@ _HEADERS = (
     (r"FreeRTOS\.h", "freertos"),
 )
 _INCLUDE = re.compile(rb'^\s*#\s*include\s*[<"]([^">]+)[">]', re.MULTILINE)
-_CONFIGURED_TICKS = re.compile(rb"^CONFIG_FREERTOS_HZ=(\d+)", re.MULTILINE)
+#: Ports whose programs call the functions of Arduino.
+_OF_ARDUINO = ("arduino", "platformio")
 _RTOS = {"zephyr": "zephyr", "espidf": "freertos", "freertos": "freertos", "nuttx": "nuttx"}
 #: Ticks per second of a port if nobody changes them: espressif/esp-idf components/freertos/Kconfig.
 _TICKS = {"espidf": Fraction(100)}
-#: Ports whose library is built for functions of its own that send and receive, also over UDP.
-CUSTOM = ("arduino", "platformio", "cubemx", "pico-sdk", "zephyr", "renesas")
 
 
 class CodePlatform(NamedTuple):
@@ -49,19 +49,30 @@ class CodePlatform(NamedTuple):
     ticks_are_stated: bool
 
 
-def platform_of(program: CodeProgram, calls: Iterable[FunctionCall], build: Iterable[SourceFile]) -> CodePlatform:
-    """The port and the operating system of a program, by its sources and files of its build system."""
-    every, stated = list(calls), _stated_ticks(program, build)
-    port = _port(program)
-    if port == "arduino" and any(call.name == "set_microros_wifi_transports" for call in every):
-        # Only its boards with ESP32 have this function: FreeRTOS with 1000 ticks per second (espressif/arduino-esp32).
+def platform_of(program: CodeProgram, calls: Iterable[FunctionCall], build: BuildFacts, board: str) -> CodePlatform:
+    """The port and the operating system of a program, by files of its build system and by its sources.
+
+    Parameters
+    ----------
+    board : as PlatformIO or amuros calls it; "" if unknown
+    """
+    every, stated, included = list(calls), _stated_ticks(program, build), _included(program)
+    port = build.port.value if build.port is not None else _port(included)
+    is_esp32 = has_freertos(board) or any(re.fullmatch(r"esp_\w+\.h", name) for name in included)
+    # Of the boards that micro-ROS for Arduino supports, those with ESP32 have this function.
+    is_esp32 = is_esp32 or any(call.name == "set_microros_wifi_transports" for call in every)
+    if port in _OF_ARDUINO and is_esp32 and (build.framework is None or build.framework.value == "arduino"):
+        # FreeRTOS with 1000 ticks per second (espressif/arduino-esp32).
         return CodePlatform(port, "freertos", stated or Fraction(1000), ticks_are_stated=True)
     rtos = _operating_system(every) or _RTOS.get(port, "")
     return CodePlatform(port, rtos, stated or _TICKS.get(port), ticks_are_stated=stated is not None)
 
 
-def _port(program: CodeProgram) -> str:
-    included = {name.decode("utf-8", "replace") for file, _ in program.files for name in _INCLUDE.findall(file.text)}
+def _included(program: CodeProgram) -> set[str]:
+    return {name.decode("utf-8", "replace") for file, _ in program.files for name in _INCLUDE.findall(file.text)}
+
+
+def _port(included: Iterable[str]) -> str:
     return next((port for pattern, port in _HEADERS if any(re.fullmatch(pattern, name) for name in included)), "")
 
 
@@ -74,12 +85,9 @@ def _operating_system(calls: Iterable[FunctionCall]) -> str:
     return next((hints[call.name] for call in calls if call.name in hints), "")
 
 
-def _stated_ticks(program: CodeProgram, build: Iterable[SourceFile]) -> Fraction | None:
+def _stated_ticks(program: CodeProgram, build: BuildFacts) -> Fraction | None:
     texts = program.macros.get("configTICK_RATE_HZ", set()) | program.macros.get("CONFIG_FREERTOS_HZ", set())
     numbers = {number for text in texts for number in re.findall(r"\d+", text)}
-    # What is configured follows the defaults of the project.
-    files = sorted(build, key=lambda file: file.path.name == "sdkconfig")
-    configured = [each.decode() for file in files for each in _CONFIGURED_TICKS.findall(file.text)]
-    numbers |= set(configured[-1:])
+    numbers |= {build.ticks.value} if build.ticks is not None else set()
     rate = next(iter(numbers)) if len(numbers) == 1 else "0"
     return Fraction(int(rate)) if 0 < len(rate) < 10 and int(rate) else None

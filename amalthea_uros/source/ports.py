@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from amalthea_uros.diagnostics import Location
+from amalthea_uros.source.boards import serial_of_board
 from amalthea_uros.source.entities import callback_of
-from amalthea_uros.source.facts import CodeTransport, Thread
+from amalthea_uros.source.facts import CodeTransport, Stated, Thread
 from amalthea_uros.source.program import CodeProgram
 from amalthea_uros.source.scope import Expression
 from amalthea_uros.source.syntax import descendants, text_of
@@ -110,38 +112,62 @@ SETTERS = frozenset({*_UDP, *_SERIAL, "rmw_uros_set_custom_transport"})
 _ARDUINO = 115200
 
 
-def transport_of(calls: Iterable[FunctionCall], program: CodeProgram) -> CodeTransport | None:
-    """The transport that the first call of a function for it sets; None if there is none."""
+def transport_of(
+    calls: Iterable[FunctionCall], program: CodeProgram, build: Stated | None, port: str, board: str
+) -> CodeTransport | None:
+    """The transport that the first call of a function for it sets; None if there is none.
+
+    Parameters
+    ----------
+    build : what files of the build system say, which counts first
+    board : as PlatformIO or amuros calls it; "" if unknown
+    """
     every = list(calls)
     call = next((each for each in every if each.name in SETTERS), None)
-    if call is None:
+    place = build.place if build is not None else call.place if call is not None else None
+    if place is None:
         return None
-    if call.name in _UDP:
-        return CodeTransport(
-            key="udp", values=(("bitrate", None),), note="bit rate of the link of the controller", place=call.place
-        )
+    key = build.value if build is not None else _key(call, port, board) if call is not None else None
     rate = _baud_rate(every, program)
-    if call.name in _SERIAL:
-        rate = rate or (_ARDUINO if call.name == "set_microros_transports" else None)
-        return _serial(rate, call)
-    framed = call.argument(0)
-    names = " ".join(argument.text for argument in call.arguments).lower()
-    is_framed = framed is not None and framed.resolved.text in ("true", "1")
-    if is_framed or any(word in names for word in ("serial", "uart", "usb", "cdc")):
-        is_usb = "usb" in names or "cdc" in names
-        return CodeTransport(key="usb_cdc", values=(), note="full speed", place=call.place) if is_usb else _serial(rate, call)
-    if "udp" in names:
-        return CodeTransport(
-            key="udp", values=(("bitrate", None),), note="bit rate of the link of the controller", place=call.place
-        )
-    return CodeTransport(key=None, values=(), note="custom transport", place=call.place)
-
-
-def _serial(rate: int | None, call: FunctionCall) -> CodeTransport:
-    value = str(rate) if rate is not None else None
-    return CodeTransport(
-        key="serial", values=(("baud_rate", value),), note="symbols per second, as the agent has", place=call.place
+    if call is not None and call.name == "set_microros_transports":
+        rate = rate or _ARDUINO
+    match key:
+        case "udp":
+            return CodeTransport(
+                key=key, values=(("bitrate", None),), note="bit rate of the link of the controller", place=place
+            )
+        case "usb_cdc":
+            return CodeTransport(key=key, values=(), note="full speed", place=place)
+        case "serial":
+            return _serial(rate, place)
+    is_serial = call is not None and call.name in _SERIAL
+    note = (
+        f"usb_cdc if Serial is a USB port of the board itself, else serial{f' with {rate} symbols per second' if rate else ''}"
     )
+    return CodeTransport(key=None, values=(), note=note if is_serial else "custom transport", place=place)
+
+
+def _key(call: FunctionCall, port: str, board: str) -> str | None:
+    """The wire of a call that sets the transport, as `app.yaml` calls it; None if the code does not say it."""
+    given = call.argument(0)
+    if call.name in _UDP:
+        return "udp"
+    if call.name in _SERIAL:
+        line = given.name if given is not None else "Serial"
+        return "usb_cdc" if line == "SerialUSB" else "serial" if line != "Serial" else serial_of_board(board)
+    names = " ".join(argument.text for argument in call.arguments).lower()
+    is_framed = given is not None and given.resolved.text in ("true", "1")
+    if is_framed or any(word in names for word in ("serial", "uart", "usb", "cdc")):
+        if port == "pico-sdk":
+            # Standard input and output, by USB or by a UART as the build says.
+            return None
+        return "usb_cdc" if "usb" in names or "cdc" in names else "serial"
+    return "udp" if "udp" in names else None
+
+
+def _serial(rate: int | None, place: Location) -> CodeTransport:
+    value = str(rate) if rate is not None else None
+    return CodeTransport(key="serial", values=(("baud_rate", value),), note="symbols per second, as the agent has", place=place)
 
 
 def _baud_rate(calls: Iterable[FunctionCall], program: CodeProgram) -> int | None:

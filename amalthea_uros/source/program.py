@@ -52,6 +52,7 @@ class CodeProgram:
     function_macros : those with parameters, with the texts
     functions : by name; several of one name in different files or classes
     members : of classes
+    objects : of each class, the variables that are one of it; an array counts as several
     statics : names that are known in one file only, with its path
     values : what variables are initialised with, by their keys
     changed : names that something assigns to, or whose address is taken: what they are initialised with may not be their value
@@ -62,6 +63,7 @@ class CodeProgram:
     function_macros: dict[str, tuple[SourceFile, Node]] = field(default_factory=dict)
     functions: dict[str, list[CodeFunction]] = field(default_factory=lambda: defaultdict(list))
     members: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    objects: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     statics: set[tuple[str, str]] = field(default_factory=set)
     values: dict[str, tuple[Node, CodeFunction | SourceFile]] = field(default_factory=dict)
     changed: set[str] = field(default_factory=set)
@@ -89,6 +91,8 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
 
 
 def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
+    if node.type in ("declaration", "field_declaration"):
+        _note_objects(program, file, node)
     match node.type:
         case "preproc_def":
             name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
@@ -156,6 +160,18 @@ def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node
     )
     inner = {text_of(name) for each in descendants(body) if each.type == "declaration" for name, _ in declared(each)}
     return CodeFunction(name, file, body, owner, parameters, frozenset({*inner, *parameters}))
+
+
+def _note_objects(program: CodeProgram, file: SourceFile, node: Node) -> None:
+    kind = node.child_by_field_name("type")
+    if kind is None or kind.type not in ("type_identifier", "qualified_identifier", *_CLASSES):
+        return
+    name = text_of(kind.child_by_field_name("name") or kind).rpartition("::")[2]
+    for declarator in node.children_by_field_name("declarator"):
+        if "pointer_declarator" not in {each.type for each in descendants(declarator)}:
+            place = f"{file.path}:{declarator.start_byte}"
+            is_array = any(each.type == "array_declarator" for each in descendants(declarator))
+            program.objects[name] |= {place, f"{place}[]"} if is_array else {place}
 
 
 def _note_variables(program: CodeProgram, file: SourceFile, node: Node) -> None:

@@ -6,9 +6,11 @@ import re
 from collections.abc import Iterable
 
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.source.boards import platform_of_board, pools_of_board
+from amalthea_uros.source.build_files import BuildFacts, build_facts
 from amalthea_uros.source.entities import CREATIONS, entity_of
-from amalthea_uros.source.executors import ACTIONS, SPINS
-from amalthea_uros.source.facts import CodeCallback, CodeFacts, CodeOption, Thread
+from amalthea_uros.source.executors import ACTIONS, SPINS, executor_of
+from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import flaws, not_understood
 from amalthea_uros.source.loops import SENDS, add_senders, add_spins
@@ -18,7 +20,7 @@ from amalthea_uros.source.platform import platform_of
 from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
 from amalthea_uros.source.sleeps import SLEEPS
-from amalthea_uros.source.walk import CodeWalk
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 
 _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
 #: How the entry of a program can be called; two of one name are two programs.
@@ -27,8 +29,12 @@ _OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
 
-def read_facts(sources: Sources) -> CodeFacts:
+def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     """What sources say about their application.
+
+    Parameters
+    ----------
+    board : the name of a platform, if it is known
 
     Raises
     ------
@@ -37,30 +43,57 @@ def read_facts(sources: Sources) -> CodeFacts:
     program = read_program(sources.code)
     walk = CodeWalk(program, _NAMES)
     walk.all()
-    facts = CodeFacts(types=defined_types(sources.interfaces))
-    facts.findings += [*sources.findings, *walk.findings, *_several_programs(program)]
-    facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, sources.build)
+    facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
+    facts.findings += [*sources.findings, *walk.findings, *_several_programs(program), *build.findings]
+    facts.ros, facts.board, facts.clock = build.ros, build.board, build.clock
+    facts.findings += _other_board(board, build)
+    name = board or (build.board.value if build.board is not None else "")
+    facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, build, name)
     _note_objects(facts, walk)
     add_spins(facts, walk.calls)
     threads = _note_threads(facts, walk)
+    _note_main_thread(facts, walk, build)
     _note_publications(facts, walk)
     add_senders(facts, walk.calls, threads)
-    facts.transport = transport_of(walk.calls, program)
-    for file in sources.meta:
-        facts.options |= _options(file)
+    facts.transport = transport_of(walk.calls, program, build.transport, facts.port, name)
+    _note_options(facts, sources, build, name)
     facts.findings += [*not_understood(walk, facts), *flaws(facts, walk), *message_flaws(facts, program)]
     return facts
+
+
+def _note_options(facts: CodeFacts, sources: Sources, build: BuildFacts, board: str) -> None:
+    """Build options: of the board, then of files for colcon, then of the configuration of the port, which replaces them."""
+    place = build.board.place if build.board is not None else None
+    pools = pools_of_board(facts.port, board)
+    facts.options |= {name: CodeOption(name=name, value=str(size), place=place) for name, size in pools.items()}
+    for file in sources.meta:
+        facts.options |= _options(file)
+    facts.options |= build.options
 
 
 def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
     for call in walk.calls:
         if call.name in CREATIONS:
             entity = entity_of(call, walk)
+            if entity is not None:
+                facts.findings += _of_each_object(call, entity, walk.program)
             if entity is not None and entity.key not in facts.entities:
                 facts.entities[entity.key] = entity
     # All executors first: functions that are called later can come earlier in the files.
     _act(facts, walk, {"rclc_executor_init"})
     _act(facts, walk, ACTIONS.keys() - {"rclc_executor_init"})
+
+
+def _of_each_object(call: FunctionCall, entity: CodeEntity, program: CodeProgram) -> list[Finding]:
+    """An entity of each object of a class, where the code does not show which object it is."""
+    owner = call.function.owner if call.function is not None else ""
+    number = len(program.objects.get(owner, ()))
+    if not owner or number < 2 or not entity.key.startswith(f"{owner}::"):
+        return []
+    message = f"'{entity.variable}' is created for each of {number} objects of '{owner}', which the description has once"
+    return [
+        Finding("IMP003", Severity.WARNING, message, call.place, "Add those of the other objects to the description by hand.")
+    ]
 
 
 def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:
@@ -81,6 +114,33 @@ def _note_threads(facts: CodeFacts, walk: CodeWalk) -> dict[str, Thread]:
         if executor is not None and call.root is not None:
             executor.thread = executor.thread or by_entry.get(call.root.scope)
     return by_entry
+
+
+def _note_main_thread(facts: CodeFacts, walk: CodeWalk, build: BuildFacts) -> None:
+    """Give executors that spin in main() what the configuration says of its thread."""
+    stated = build.main_stack or build.main_priority
+    for call in walk.calls:
+        executor = executor_of(facts, call) if call.name in SPINS else None
+        if executor is None or executor.thread is not None or call.root is None or call.root.name != "main" or stated is None:
+            continue
+        executor.thread = Thread(
+            name=executor.variable,
+            entry=None,
+            place=stated.place,
+            stack=int(build.main_stack.value) if build.main_stack is not None else None,
+            priority=int(build.main_priority.value) if build.main_priority is not None else None,
+        )
+
+
+def _other_board(board: str | None, build: BuildFacts) -> list[Finding]:
+    """A board that was named, and is not that of the build."""
+    stated = platform_of_board(build.board.value) if build.board is not None else None
+    if board is None or build.board is None or stated in (None, board):
+        return []
+    message = f"the build is for the board '{build.board.value}', which is '{stated}', not '{board}'"
+    return [
+        Finding("IMP025", Severity.WARNING, message, build.board.place, "Leave out --board, or give the files of that board.")
+    ]
 
 
 def _note_publications(facts: CodeFacts, walk: CodeWalk) -> None:

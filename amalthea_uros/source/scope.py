@@ -23,6 +23,8 @@ _FACTORS = {
     **dict.fromkeys(("RCL_MS_TO_NS", "RCUTILS_MS_TO_NS"), 10**6),
     **dict.fromkeys(("RCL_US_TO_NS", "RCUTILS_US_TO_NS"), 10**3),
 }
+#: The binding of the object whose method is called.
+THIS = "this"
 _WRAPPERS = ("parenthesized_expression", "cast_expression", "pointer_expression")
 
 
@@ -115,8 +117,15 @@ class Expression:
             if name in self.function.locals:
                 return self.function.scope + name
             if name in self.program.members.get(self.function.owner, ()) and self.function.owner:
-                return f"{self.function.owner}::{name}"
+                return f"{self._holder}.{name}" if self._holder else f"{self.function.owner}::{name}"
         return f"{self.file.path}:{name}" if (str(self.file.path), name) in self.program.statics else name
+
+    @property
+    def _holder(self) -> str:
+        """The key of the object whose method it is in; "" if its class has one object only, or if that is unknown."""
+        owner = self.function.owner if self.function is not None else ""
+        holder = self.bindings.get(THIS)
+        return holder.key if isinstance(holder, Expression) and len(self.program.objects.get(owner, ())) > 1 else ""
 
     @property
     def name(self) -> str:

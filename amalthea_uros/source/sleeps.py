@@ -120,6 +120,9 @@ def wait_of(call: FunctionCall, facts: CodeFacts) -> WaitCall:
     time = _sleep_time(call, rate if facts.ticks_are_stated else None)
     if call.name in (*_BUSY_MILLISECONDS, *_BUSY_MICROSECONDS):
         return WaitCall(time, is_busy=True)
+    if call.name == "delay" and not facts.rtos:
+        # Arduino without an operating system; where one is not seen, a busy wait is what delays others longest.
+        return WaitCall(time, is_busy=True)
     if call.name == "usleep" and time is not None:
         if facts.rtos == "zephyr" and time >= SECOND:
             # zephyr lib/posix/sleep.c

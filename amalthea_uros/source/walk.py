@@ -10,7 +10,7 @@ from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of
-from amalthea_uros.source.scope import Binding, Expression, called
+from amalthea_uros.source.scope import THIS, Binding, Expression, called
 from amalthea_uros.source.syntax import branches, descendants, is_conditional, location_of, text_of
 
 if TYPE_CHECKING:
@@ -196,6 +196,11 @@ class CodeWalk:
         body = node.child_by_field_name("body")
         if body is None:
             return
+        condition = node.child_by_field_name("condition")
+        if node.type == "do_statement" and condition is not None and self._expression(condition, context).number == 0:
+            # The usual form of a macro, or of a block that `break` leaves.
+            self._visit(body, context)
+            return
         counted = self._iterations(node, context)
         if counted is not None:
             name, values = counted
@@ -253,7 +258,7 @@ class CodeWalk:
         expressions = tuple(self._expression(argument, context) for argument in arguments)
         if callee is not None:
             if callee not in context.stack and callee in self._relevant.functions:
-                self._enter(callee, expressions, context)
+                self._enter(callee, expressions, self._holder(node, callee, context), context)
             return
         plain = name.removeprefix("::").removeprefix("std::").rpartition("this->")[2]
         self.calls.append(
@@ -284,13 +289,28 @@ class CodeWalk:
                 return close[0]
         return None
 
-    def _enter(self, callee: CodeFunction, arguments: tuple[Expression, ...], context: _WalkPosition) -> None:
+    def _holder(self, node: Node, callee: CodeFunction, context: _WalkPosition) -> Binding | None:
+        """The object whose method a call calls; within a method of the same class, that of the method."""
+        function = node.child_by_field_name("function")
+        given = (
+            function.child_by_field_name("argument") if function is not None and function.type == "field_expression" else None
+        )
+        if given is not None and given.type != "this":
+            return self._expression(given, context)
+        is_same = context.function is not None and bool(callee.owner) and callee.owner == context.function.owner
+        return context.bindings.get(THIS) if is_same else None
+
+    def _enter(
+        self, callee: CodeFunction, arguments: tuple[Expression, ...], holder: Binding | None, context: _WalkPosition
+    ) -> None:
         self._entries -= 1
         if self._entries < 0:
             self._stop(callee.body, context)
             return
         bindings: dict[str, Binding] = dict(zip(callee.parameters, arguments, strict=False))
         bindings.pop("", None)
+        if holder is not None:
+            bindings[THIS] = holder
         inner = replace(context, file=callee.file, function=callee, bindings=bindings, stack=(*context.stack, callee))
         self._visit(callee.body, inner)
 

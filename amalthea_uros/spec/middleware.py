@@ -58,6 +58,17 @@ class InitialisationSection(DescriptionSection):
     """Sizes of the requests; default: unknown."""
 
 
+_PORTS = described(
+    arduino="The precompiled library for Arduino.",
+    platformio="The library for PlatformIO.",
+    espidf="The component for ESP-IDF.",
+    zephyr="The module for Zephyr.",
+    cubemx="The utilities for STM32CubeMX.",
+    pico_sdk="The library for the Raspberry Pi Pico SDK.",
+    renesas="The component for Renesas e2 studio.",
+    nuttx="NuttX, built by micro_ros_setup.",
+    freertos="FreeRTOS, built by micro_ros_setup.",
+)
 _TRANSPORTS = described(
     udp="UDP sockets.",
     tcp="TCP sockets.",
@@ -224,6 +235,18 @@ class Middleware(DescriptionSection, defer_build=False):
 
     profile: Name = "xrce-dds"
     """The middleware: `xrce-dds`, `zenoh-pico`, or a file that describes another one."""
+    ros: Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "rolling"] | None = None
+    """Distribution of ROS 2 of its micro-ROS: a parameter server has five services up to humble, and six since;
+    default: unknown, so that six are counted."""
+    port: (
+        Annotated[
+            Literal["arduino", "platformio", "espidf", "zephyr", "cubemx", "pico-sdk", "renesas", "nuttx", "freertos"], _PORTS
+        ]
+        | None
+    ) = None
+    """How micro-ROS is brought to the controller: it decides the transport that the library is built for, default pools and how
+    options are set; default: that of the platform. With another port than that of the platform, nothing that the platform says of its
+    own port is used."""
     policy: Annotated[Literal["FixedPriorityPreemptive", "OSEK"], _POLICIES] = "FixedPriorityPreemptive"
     """Scheduling policy of the operating system."""
     task_periods: list[Duration] = Field(default_factory=list)

@@ -107,13 +107,15 @@ def complete(description: Description, folder: Path, other: str | None = None) -
     if path is None:
         rtos = _rtos(description.os, folder, findings)
         return _completed(description, None, [rtos.os], [rtos.middleware], folder, findings)
-    platform = _platform(path, description.hardware)
+    platform = _of_same_port(_platform(path, description.hardware), description.middleware.port)
     if description.os.rtos in (None, platform.os.rtos):
         rtos = _rtos(platform.os, path.parent, findings)
         models = [platform.middleware, rtos.middleware]
         return _completed(description, platform, [platform.os, rtos.os], models, folder, findings)
     rtos = _rtos(description.os, folder, findings)
-    return _completed(description, platform, [rtos.os], [rtos.middleware, platform.middleware], folder, findings)
+    # The port of the platform is one to its own operating system.
+    model = platform.middleware.model_copy(update={"port": None})
+    return _completed(description, platform, [rtos.os], [rtos.middleware, model], folder, findings)
 
 
 def _completed(
@@ -135,6 +137,20 @@ def _completed(
     name = None if platform is None else platform.platform
     mistakes = (*findings, *measured.findings)
     return CompleteDescription(description.model_copy(update=update), name, mistakes, measured.assumptions)
+
+
+#: What of the operating system a port configures.
+_OF_PORT = {"tick", "time_slice"}
+
+
+def _of_same_port(platform: Platform, port: str | None) -> Platform:
+    """A platform without what it says of the port of micro-ROS to it, if the application has another one."""
+    own = platform.middleware
+    if port is None or own.port is None or own.port == port:
+        return platform
+    kept = {key: getattr(own, key) for key in ("policy", "task_periods") if own.states(key)}
+    system = {key: getattr(platform.os, key) for key in platform.os.model_fields_set - _OF_PORT}
+    return platform.model_copy(update={"middleware": Middleware(**kept), "os": OsSection.model_construct(**system)})
 
 
 def _policy(model: Middleware) -> Middleware:

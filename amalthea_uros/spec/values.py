@@ -147,7 +147,7 @@ _TEXTS: tuple[tuple[Before, Callable[[Any], str]], ...] = (
     (_TIME, units.time_text),
     (_FREQUENCY, units.frequency_text),
     (_DATA_SIZE, units.data_size_text),
-    (_BIT_RATE, lambda rate: f"{units.data_size_text(rate)}/s"),
+    (_BIT_RATE, units.bit_rate_text),
 )
 
 

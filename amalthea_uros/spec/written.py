@@ -7,7 +7,7 @@ from typing import Any, TypeAlias, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from amalthea_uros.spec.section import DescriptionSection
+from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import quantity_text
 
 #: What a file can contain: text as it is read again, numbers, lists and mappings.
@@ -39,7 +39,7 @@ def section_class(section: DescriptionSection, key: str) -> type[DescriptionSect
 
 def _written(value: Any, text: Callable[[Any], str] | None) -> Written:
     if isinstance(value, DescriptionSection):
-        return content(value)
+        return _plain(value) or content(value)
     if isinstance(value, Mapping):
         return {str(key): _written(item, text) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -47,6 +47,15 @@ def _written(value: Any, text: Callable[[Any], str] | None) -> Written:
     if text is not None:
         return text(value)
     return value if isinstance(value, int | str) else str(value)
+
+
+def _plain(section: DescriptionSection) -> Written | None:
+    """The plain value of a section that says no more than one; None otherwise."""
+    parts = content(section)
+    if not isinstance(section, Shorthand) or parts.keys() != set(section.shorthand):
+        return None
+    first, *others = parts.values()
+    return first if all(each == first for each in others) else None
 
 
 def _marks(field: FieldInfo) -> Iterator[Any]:

@@ -30,6 +30,7 @@ from amalthea_uros.timing.scheduling.allocation import allocated_cores, effectiv
 from amalthea_uros.timing.scheduling.ranks import SchedulingOrder
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess, Server
 from amalthea_uros.timing.touching import Touching, why_suspended, with_successors
+from amalthea_uros.timing.waits import WITHOUT_BOUND, WaitingProcess, awaited_events
 
 T = TypeVar("T")
 
@@ -55,6 +56,7 @@ class TimingContext:
     demands : execution demand, in the time base of the core, including scheduler decisions at the end of jobs
     decisions : demand of scheduler decisions at activations, if the model specifies it
     reasons : why the response time of a process is unknown
+    waiting : processes whose waits for events depend on response times; `demands` has those of which the solution knows a bound
     unclear_locks : why the critical sections of a process are unknown
     unknown_demands : why the execution demand of a process does not follow from its activities
     open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
@@ -69,6 +71,7 @@ class TimingContext:
     decisions: dict[str, MultiframeDemand] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     unclear_locks: dict[str, str] = field(default_factory=dict)
+    waiting: dict[str, WaitingProcess] = field(default_factory=dict)
     unknown_demands: Mapping[str, str] = field(default_factory=dict)
     open_semaphores: frozenset[str] = frozenset()
 
@@ -162,6 +165,8 @@ class TimingContext:
     def stated_demand(self, process: str) -> MultiframeDemand | None:
         """The demand of a process on its core, also if its scheduling cannot be analysed; None if it is unknown."""
         core, model = self.placement(process).core, self.system.processes[process]
+        if process in self.waiting:
+            return self.waiting[process].demand if process in self.demands else None
         if process in self.demands or core is None or not states_execution_time(model, self.system):
             return self.demands.get(process)
         try:
@@ -206,9 +211,23 @@ class TimingContext:
         """The processes of executors in loops, and those that they trigger: they may be activated less often."""
         return with_successors(self.system.executor_of_task, self.system, self.dataflow)
 
-    def has_loops(self, core: str) -> bool:
-        """Whether an executor that spins in a loop runs on a core: when its rounds begin depends on what they do."""
-        return any(item.name in self.system.executor_of_task for item in self.on_core(core))
+    def has_loops_or_waits(self, core: str) -> bool:
+        """Whether a process of a core executes at times that its activations do not determine.
+
+        When the rounds of an executor that spins in a loop begin depends on what they do, and when a job that waits for events
+        resumes depends on other processes.
+        """
+        return self.has_waits(core) or any(item.name in self.system.executor_of_task for item in self.on_core(core))
+
+    def has_waits(self, core: str) -> bool:
+        """Whether a process of a core waits for events."""
+        return bool(self.waiting) and any(item.name in self.waiting for item in self.on_core(core))
+
+    @cached_property
+    def awaited_alone(self) -> frozenset[str]:
+        """The processes of which each job is activated only by one that has waited for the job before it."""
+        awaited = [each for waiting in self.waiting.values() for each in waiting.awaited]
+        return frozenset(each.setter for each in awaited if each.gap is None and each.is_last)
 
     def served(self, core: str, server: str | None) -> Sequence[ScheduledProcess | Server]:
         """Processes and servers on a core itself or in the budget of a server, highest rank first."""
@@ -272,17 +291,31 @@ class TimingContext:
                     raise UnknownError(self.unknown_demands[name])
                 if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownError(reason)
-                demand = model.of_process(scheduled.process, scheduled.core)
+                waits = awaited_events(scheduled.process, self.activations)
+                demand = (self.executing if waits else model).of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownError("it has no execution time, and neither have the runnables that it calls")
                 if name in self.decisions:
                     demand = MultiframeDemand((*demand.frames, *self.decisions[name].frames))
                 if demand.worst > MAX_INPUT:
                     raise UnknownError("its execution time exceeds the supported range of times")
-                self.demands[name] = demand
+                if waits:
+                    self.waiting[name] = WaitingProcess.of(scheduled.process, waits, demand, self.executing, scheduled.core)
+                    self.mark_unknown(name, WITHOUT_BOUND)
+                else:
+                    self.demands[name] = demand
             except UnknownError as error:
                 self.notes.warning("ANA004", f"the execution demand of {name!r} is unknown: {error}", scheduled.process)
                 self.mark_unknown(name, str(error))
+
+    @cached_property
+    def executing(self) -> DemandModel:
+        """Converts activities to execution demand, without the time for which jobs wait for events."""
+        return DemandModel(self.system, self.notes, self.settings, ignores_waits=True)
+
+    def execution_model(self, process: str) -> DemandModel:
+        """Converts activities of a process of known demand to execution demand; what it waits for is apart."""
+        return self.executing if process in self.waiting and process in self.demands else self.demand_model
 
     @cached_property
     def _scheduler_of(self) -> dict[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
@@ -111,7 +111,14 @@ def note_of(text: str, kind: EventKind, index: EntityIndex, name: str) -> int:
 
 
 class TraceReader(ABC):
-    """Gives the events of a trace; it can be used once."""
+    """Gives the events of a trace; it can be used once.
+
+    Attributes
+    ----------
+    begin_of_chains : whether chains begin with the activation of the job that makes their first step, or with that step
+    """
+
+    begin_of_chains: ClassVar[EventKind] = EventKind.ACTIVATE
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -6,16 +6,18 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from amalthea_uros._internal.ports import known_ports, parameter_services
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.spec.application import Application, NodeSection
-from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES, PARAMETER_SERVICES
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import values_of, with_generated_options
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option
 from amalthea_uros.uros.storage import MessageStorage, storage_of
 
-META, HEADER, CMAKE = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake"
+META, HEADER, CMAKE, KCONFIG = "colcon.meta", "amuros_limits.h", "zenoh_options.cmake", "amuros.conf"
 #: In each file, by which it can be told from those that people wrote.
 MARK = "Written by amuros generate"
 #: Packages of options that the header of rmw_microxrcedds repeats.
@@ -48,8 +50,11 @@ def texts_of(assembly: Assembly) -> dict[str, str]:
     )
     values = values_of(assembly.options)
     packages: dict[str, list[tuple[Option, int]]] = {}
+    kconfig = _kconfig(assembly.profile.middleware.port, values)
+    elsewhere = {option.name for _, _, option in kconfig}
     for option, value in values:
-        packages.setdefault(option.package, []).append((option, value))
+        rows = packages.setdefault(option.package, [])
+        rows += [(option, value)] if option.name not in elsewhere else []
     application = assembly.description.application
     content = {
         "mark": MARK,
@@ -59,10 +64,18 @@ def texts_of(assembly: Assembly) -> dict[str, str]:
         "checks": list(_checks(values)),
         "handles": _constants("AMUROS_HANDLES", _handles(assembly)),
         "sizes": _constants("AMUROS_SIZE", _sizes(application)),
+        "kconfig": kconfig,
     }
     is_xrce = _WITH_HEADER in packages
-    names = (META, HEADER) if is_xrce else (CMAKE, HEADER)
+    names = (META, HEADER, *([KCONFIG] if kconfig else [])) if is_xrce else (CMAKE, HEADER)
     return {name: environment.get_template(f"{name}.j2").render(content) for name in names}
+
+
+def _kconfig(port: str | None, values: list[tuple[Option, int]]) -> list[tuple[str, str, Option]]:
+    """The options that the configuration of a port replaces, whatever `colcon.meta` says, by their names there."""
+    known = known_ports().get(port or "")
+    names = known.kconfig if known is not None else {}
+    return [(names[option.name], option.text(value), option) for option, value in values if option.name in names]
 
 
 def _checks(values: list[tuple[Option, int]]) -> Iterator[tuple[str, int, Option]]:
@@ -79,14 +92,14 @@ def _handles(assembly: Assembly) -> dict[str, int]:
     loops = {executor.name: len(executor.handles) for executor in assembly.system.executors}
     if loops:
         return loops
-    nodes = assembly.description.application.nodes
-    return {assembly.description.middleware.stated_executors[0].name: sum(map(_node_handles, nodes))}
+    nodes, middleware = assembly.description.application.nodes, assembly.description.middleware
+    return {middleware.stated_executors[0].name: sum(_node_handles(node, middleware) for node in nodes)}
 
 
-def _node_handles(node: NodeSection) -> int:
+def _node_handles(node: NodeSection, middleware: Middleware) -> int:
     messages = len(node.subscriptions) + len(node.services) + len(node.clients)
     others = len(node.timers) + len(node.guard_conditions) + len(node.action_servers) + len(node.action_clients)
-    parameters = PARAMETER_SERVICES if node.parameter_server is not None else 0
+    parameters = parameter_services(middleware.ros) if node.parameter_server is not None else 0
     lifecycle = min(node.lifecycle.services, LIFECYCLE_SERVICES) if node.lifecycle is not None else 0
     return messages + others + parameters + lifecycle
 

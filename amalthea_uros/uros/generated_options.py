@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
+from amalthea_uros._internal.ports import known_ports
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -125,7 +126,15 @@ class _MetaComparison(Brief):
         described = {option.name: option for option in self.profile.options(self.application)}
         built = self._built()
         for option in with_waiting_messages(built.options(self.application), self.waiting):
+            if option.name in self._configured:
+                continue
             yield from self._judge(option, described.get(option.name), built, Location(meta.path))
+
+    @property
+    def _configured(self) -> Mapping[str, str]:
+        """The options that the configuration of the port replaces, with their names there."""
+        port = known_ports().get(self.profile.middleware.port or "")
+        return port.kconfig if port is not None else {}
 
     def _accept(self, definition: Definition) -> Iterator[Finding]:
         """Keep the value of an option, or say why the build does not."""
@@ -144,6 +153,10 @@ class _MetaComparison(Brief):
             message = f"{name} has no effect: it is set again on line {place.line}"
             yield Finding("GEN005", Severity.WARNING, message, self.places[name], "Remove one of them.")
         self.places[name] = place
+        if (setting := self._configured.get(name)) is not None:
+            message = f"{name} has no effect: {setting} of the configuration of the port replaces it"
+            yield Finding("GEN005", Severity.WARNING, message, place, f"Set {setting} in prj.conf.")
+            return
         value = row.number(definition.value)
         problem = _problem(row, value, definition.value)
         if problem is None and value is not None:

@@ -69,7 +69,7 @@ def initialisation(
     line : the wire; None if it is not described
     period : of the task that creates entities in cycles; None if a thread waits for the responses
     """
-    entities, figures = created_entities(application), profile.creation
+    entities, figures = created_entities(application, profile.middleware), profile.creation
     stated = middleware.initialisation.response_time
     if not entities or (figures is None and period is None):
         return None

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from amalthea_uros._internal.ports import known_ports
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.spec.application import MessageCallback
 from amalthea_uros.spec.hardware import HardwareSection
+from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext
@@ -30,8 +32,22 @@ def check_memory(
     storage = storage_of(context.profile, application, memory)
     if storage is not None:
         _check_storage(callbacks, context.profile.options(application), storage, findings)
+    _check_stacks(context.description.middleware, findings)
     if (exceeded := exceeded_memory(memory, storage, hardware)) is not None:
         findings.add_all([exceeded])
+
+
+def _check_stacks(middleware: Middleware, findings: Notes) -> None:
+    """Report stacks of executors that are smaller than any that the documentation of the port has."""
+    port = known_ports().get(middleware.port or "")
+    if port is None or port.least_stack is None:
+        return
+    for executor in middleware.stated_executors:
+        if executor.stack is not None and executor.stack < 8 * port.least_stack:
+            least = f"no task of {port.title} has less than {port.least_stack} B"
+            message = f"the stack of {executor.name!r} has {executor.stack // 8} B, but {least}"
+            advice = f"Set {port.least_stack} B or more ({port.references['least_stack']}), or measure what is used."
+            findings.warning("UR140", message, executor.location("stack"), advice)
 
 
 def exceeded_memory(memory: MemoryDemand, storage: MessageStorage | None, hardware: HardwareSection) -> Finding | None:

@@ -26,6 +26,7 @@ WITH_A_FILE = {
     "check": ["{}"],
     "compare": ["{}", "{}"],
     "diff": ["{}", str(BRAKE)],
+    "export": ["{}", "-o", "-"],
     "fmt": ["{}"],
     "generate": [str(YAML), "--check", "{}"],
     "import": ["{}"],

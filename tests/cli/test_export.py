@@ -1,5 +1,7 @@
 """`amuros export`, also as an importer of chronSUITE."""
 
+from xml.etree import ElementTree
+
 from command import amuros
 from support import ROOT
 
@@ -58,3 +60,34 @@ def test_ids_can_depend_on_a_text_or_on_the_files(tmp_path):
     texts = [amuros("export", SAMPLE, *more).stdout for more in ([], ["--stable-from-value", "v"], ["--stable-from-hash"])]
     assert len(set(texts)) == 3
     assert amuros("export", SAMPLE, "--stable-from-value", "v").stdout == texts[1]
+
+
+MODEL = ROOT / "samples" / "executor.amxmi"
+
+
+def test_a_mapping_names_both_objects_of_each_pair(tmp_path):
+    project, mapping = tmp_path / "project.iprx", tmp_path / "mapping.xmi"
+    run = amuros("export", "--importer", "--pedantic", "-m", mapping, "-o", project, MODEL)
+    assert run.returncode == 0
+    pairs = [
+        tuple(each.get("href").split("#") for each in pair) for pair in ElementTree.parse(mapping).getroot().findall("mappings")
+    ]
+    names = {element.get("intrinsicId"): element.get("name") for element in ElementTree.parse(project).iter()}
+    assert ["Executor_Task?type=Task", "Executor_Task"] in [[before[1], names[after[1]]] for before, after in pairs]
+    assert {(before[0], after[0]) for before, after in pairs} == {("executor.amxmi", "project.iprx")}
+
+
+def test_a_mapping_needs_two_files(tmp_path):
+    assert amuros("export", "--importer", "-m", tmp_path / "mapping.xmi", MODEL).returncode == 1
+    run = amuros("export", "-m", tmp_path / "mapping.xmi", "-o", tmp_path / "project.iprx", SAMPLE)
+    assert run.returncode == 2
+    assert "needs an AMALTHEA model" in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_memories_can_be_left_out(tmp_path):
+    target = tmp_path / "project.iprx"
+    assert amuros("export", SAMPLE, "--no-memory-accesses", "-o", target).returncode == 0
+    kinds = {element.tag for element in ElementTree.parse(target).iter()}
+    assert not kinds & {"memories", "interconnects", "initiator", "responder"}
+    assert amuros("analyze", target).stdout == amuros("analyze", SAMPLE).stdout

@@ -34,9 +34,9 @@ def test_the_summary_is_that_of_the_sample():
 def test_changes_are_reported_with_their_impact():
     run = amuros("report", ADVANCED, "--no-simulation", *OVERLOADED, "--output", "markdown")
     assert run.returncode == 1
-    assert "| Control_Function.execution_time | 4 us | 999 us |" in run.stdout
+    assert "| Control_Function.execution_time | 4 us | 0.999 ms |" in run.stdout
     assert "### Before and after" in run.stdout
-    assert "Control_Function.execution_time: 4 us -> 999 us" in run.stderr
+    assert "Control_Function.execution_time: 4 us -> 0.999 ms" in run.stderr
 
 
 @pytest.mark.parametrize(("fail_on", "code"), [("missed", 1), ("never", 0)])

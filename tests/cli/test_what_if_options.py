@@ -114,7 +114,7 @@ def test_diff_of_descriptions_in_words_of_timing(tmp_path):
     assert "period: 1 ms, execution_time: 4 us" in " ".join(text.split()) or "4 us" in text
     new.write_text(text.replace("4 us", "6 us"))
     found = amuros("diff", old, new, "--impact")
-    assert "  Control_Function_Callback: execution time 4 us -> 6 us" in found.stdout.splitlines()
+    assert "  Control_Function.execution_time: 4 us -> 6 us" in found.stdout.splitlines()
     assert any(
         line.startswith("Control_Function worst response") and " worse " in f"{line} "
         for line in section(found.stdout, "Before and after the change")
@@ -131,8 +131,16 @@ def test_diff_of_descriptions_in_words_of_timing(tmp_path):
     assert content["impact"]["rows"]
 
 
-def test_diff_names_added_and_removed_tasks_with_their_timing():
+def test_diff_of_descriptions_names_what_only_one_has():
     found = amuros("diff", SAMPLES / "bodas-test-advanced.yaml", SAMPLES / "drive-and-lift.yaml")
+    lines = found.stdout.splitlines()
+    assert "  + nodes.lift" in lines
+    assert "  - nodes.bodas" in lines
+    assert "  can.bitrate: 250 kbit/s -> 1 Mbit/s" in lines
+
+
+def test_diff_names_added_and_removed_tasks_with_their_timing():
+    found = amuros("diff", MODEL, SAMPLES / "drive-and-lift.amxmi")
     lines = found.stdout.splitlines()
     assert "  + task Control_Lift (every 20 ms, 100 us..250 us, priority 4, Core_1)" in lines
     assert "  - task Message_Factor (every 20 ms, 2 us, priority 1, Core_0)" in lines

@@ -18,6 +18,7 @@ INTENDED = {
 }
 #: The same in single models, where the importer writes something that the model does not say.
 INTENDED_IN = {
+    "10_chain_gap": r"^/eventChains\[EC\]/nodes",  # the end of a part is dropped where the next one begins with another event
     "10_lat_nobounds": r"^/requirements\[LC\]/",  # a latency constraint without bounds becomes an upper limit of 0
     "20_ticks_beta": r"/timeDistribution/type$",  # a beta distribution becomes its upper bound
     "20_ticks_bounds_default": r"/timeDistribution/mean/value$",  # the mean of two bounds is less than both

@@ -97,6 +97,30 @@ def test_a_process_that_is_not_understood_makes_response_times_unknown(project):
     assert "INC006" in [finding.rule for finding in open_system(project).findings]
 
 
+@pytest.mark.parametrize(
+    ("before", "inserted"),
+    [
+        ("<cores ", '<hypervisor xsi:type="model:HyperVisorConfig" intrinsicId="_x" name="H"/>'),
+        (
+            "<cores ",
+            '<peripherals xsi:type="p:Timer" xmlns:p="http://inchron.com/realtime/root/3.5.0/model/peripheral" name="P"/>',
+        ),
+    ],
+    ids=["hypervisor", "peripheral"],
+)
+def test_what_may_take_time_of_a_processor_makes_response_times_unknown(project, before, inserted):
+    project.write_text(project.read_text().replace(before, f"{inserted}{before}", 1))
+    assert response_of(project, "First") is None
+    assert response_of(project, "Second") is None
+
+
+@pytest.mark.parametrize("feature", ['server="true"', 'maxThreads="2"', 'idleTask="true"'])
+def test_a_process_with_more_than_its_call_graph_has_no_known_demand(project, feature):
+    project.write_text(project.read_text().replace(' name="First"', f' name="First" {feature}', 1))
+    assert response_of(project, "First") is None
+    assert response_of(project, "Second") is None
+
+
 def test_damaged_projects_end_with_findings(project):
     chance, text = random.Random(1), export(SAMPLES[0], project).text
     for _ in range(60):

@@ -42,8 +42,21 @@ def loop(tmp_path, body, includes="", **others):
         (f"{SPIN} HAL_Delay(wait());", ["spin_some: 10 ms", "busy_wait: TODO"]),
         # Sleeps of other states, and of another branch, are no part of the rounds that spin.
         (f"if (connected) {{ {SPIN} }} else {{ delay(500); }}", ["{spin_some: 10 ms}"]),
-        (f"switch (s) {{ case 1: delay(500); break; case 2: {SPIN} delay(3); break; }}", ["{spin_some: 10 ms, sleep: 3 ms}"]),
-        (f"{SPIN} if (idle) {{ delay(500); }}", ["{spin_some: 10 ms, sleep: TODO}"]),
+        (
+            f"switch (s) {{ case 1: delay(500); break; case 2: {SPIN} usleep(3000); break; }}",
+            ["{spin_some: 10 ms, sleep: 3 ms}"],
+        ),
+        (f"{SPIN} if (idle) {{ usleep(500); }}", ["{spin_some: 10 ms, sleep: TODO}"]),
+        # A loop in it is a part of each iteration, however often; one that counts to a constant is known.
+        (
+            f"{SPIN} while (busy) {{ rcl_publish(&p, &m, NULL); usleep(9); }}",
+            ["spin_some: 10 ms", "publish: [out]", "sleep: TODO"],
+        ),
+        (f"{SPIN} for (int i = 0; i < 3; i++) {{ usleep(1000); }}", ["{spin_some: 10 ms, sleep: 3 ms}"]),
+        # The description has no loop in which an executor spins twice.
+        (f"{SPIN} usleep(1000); {SPIN}", ["TODO"]),
+        # Arduino without an operating system waits busily.
+        (f"{SPIN} delay(5);", ["spin_some: 10 ms", "busy_wait: 5 ms"]),
     ],
 )
 def test_a_loop_has_its_items_in_order(body, expected, tmp_path):

@@ -10,6 +10,7 @@ import amalthea_uros as amuros
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Gauss, Uniform
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.demand.quantiles import bounded
 from amalthea_uros.units import MICROSECOND as US
@@ -43,6 +44,8 @@ def test_only_who_states_a_quantile_gets_bounds():
     # 100 ticks plus 23.26 at 1 MHz.
     assert (analysis.processes["T"].wcrt, analysis.processes["T"].verdict) == (124 * US, "met")
     assert any("a probability of 0.01 each" in sentence for sentence in analysis.assumptions)
+    said = "Schedulable: yes, if no execution time is beyond its quantile of 0.01 (--quantile); tightest: T"
+    assert closing_line(analysis.summary).startswith(said)
 
 
 def test_the_simulation_stays_within_the_bounds():

@@ -10,6 +10,8 @@ from amalthea_uros import analyze, describe
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
+from amalthea_uros.judge.summary import Schedulable
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.units import parse_time
 from amalthea_uros.uros.described import describe_text
@@ -90,10 +92,30 @@ def test_the_controller_is_analysed_with_the_jitter_of_the_host():
     assert result.chains["odom-to-cmd"].worst is not None
 
 
-def test_several_publishers_are_an_error_and_leave_the_chain_unknown():
-    result = analyze(ROBOT.replace("max: 3 ms}}", "max: 3 ms}, publishes: [cmd_vel]}"))
-    assert "HST004" in {each.rule for each in result.findings}
+UNLIKE = [
+    ("max: 3 ms}}", "max: 3 ms}, publishes: [cmd_vel]}", "HST004"),  # several publishers
+    ("interval: 100 ms", "interval: 200 ms", "HST003"),
+    ("policy: fifo, priority: 80, core: 0", "core: 0", "HST001"),  # it is unknown when the host publishes
+]
+
+
+@pytest.mark.parametrize(("old", "new", "rule"), UNLIKE)
+def test_nothing_is_met_that_depends_on_messages_that_the_host_sends_otherwise(old, new, rule):
+    text = ROBOT.replace("execution_time: 150 us}", "execution_time: 150 us, deadline: 60 ms}").replace(old, new)
+    result = analyze(text)
+    assert rule in {each.rule for each in result.findings}
     assert result.chains["odom-to-cmd"].worst is None
+    judged = (*result.requirements, result.processes["cmd_vel_topic_to_On_Cmd"])
+    assert {each.name for each in judged} >= {"On_Cmd_deadline", "odom-to-cmd_reaction"}
+    assert {each.verdict for each in judged} == {Verdict.UNKNOWN}
+    assert result.summary.schedulable is Schedulable.UNKNOWN
+
+
+@pytest.mark.parametrize(("old", "new", "_rule"), UNLIKE)
+def test_a_callback_outside_of_loops_is_unknown_with_the_task_that_takes_its_messages(old, new, _rule):
+    loop = "loop: {spin_some: 100 ms, sleep: 10 ms}, execution_time: {base: 40 us, per_handle: 5 us}"
+    text = ROBOT.replace(loop, "period: 10 ms, execution_time: 10 us").replace(old, new)
+    assert {analyze(text).processes[each].verdict for each in ("Spin", "On_Cmd")} == {Verdict.UNKNOWN}
 
 
 @pytest.mark.parametrize("executor", ["log", "control"])

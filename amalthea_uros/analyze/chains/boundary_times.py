@@ -191,9 +191,12 @@ class BoundaryWindows:
         before = self._before(boundary)
         if before is None:
             return worst
+        process, context = self.stage.process, self.solution.context
+        everything = context.execution_model(process.name).of_activities(process, process.activities, self._core)
+        if process.name in context.waiting:
+            # It may have waited as long as it can, and executes the rest afterwards.
+            return max(0, worst - max(0, everything.best - before.best) * self.unit // self._time_base)
         # Overheads of the job that belong to no activity may all come first.
-        process = self.stage.process
-        everything = self.solution.context.demand_model.of_activities(process, process.activities, self._core)
         return self._latest_after(before.worst + self._demand.worst - everything.worst, everything.best - before.best)
 
     def _latest_after(self, executed: Time, left: Time) -> Time:
@@ -218,7 +221,7 @@ class BoundaryWindows:
         position = position_of(boundary)
         if position is None or not position.is_certain:
             return None
-        model = self.solution.context.demand_model
+        model = self.solution.context.execution_model(self.stage.process.name)
         return model.of_position(position, self._core, including=kind(boundary) is JobPhase.AFTER)
 
     @property

@@ -120,7 +120,7 @@ class StageTiming:
 
     def _demand_after(self, process: Process, boundary: Fire | Read) -> Time:
         """The minimum demand of a job after something that it does; 0 if that is unknown."""
-        model, scheduled = self.context.demand_model, self.context.scheduled.get(process.name)
+        model, scheduled = self.context.execution_model(process.name), self.context.scheduled.get(process.name)
         if scheduled is None or boundary.position is None:
             return 0
         before = model.of_position(boundary.position, scheduled.core, including=True)
@@ -287,6 +287,8 @@ class StageTiming:
         return both is not None and self._blocking_on(both[0].core).interrupts(*both)
 
     def _scheduled(self, one: Stage, other: Stage) -> tuple[ScheduledProcess, ScheduledProcess] | None:
+        if one.process.name in self.context.waiting:
+            return None  # while it waits, it keeps nobody off
         first, then = self.context.scheduled.get(one.process.name), self.context.scheduled.get(other.process.name)
         return None if first is None or then is None else (first, then)
 
@@ -313,7 +315,7 @@ class StageTiming:
         if is_inside(reader.enter) and not self._demand_after(reader.process, reader.enter):
             return False
         releases = known_releases(reader.process, self.context.system)
-        if releases is None or self.context.has_loops(self.context.scheduled[reader.process.name].core):
+        if releases is None or self.context.has_loops_or_waits(self.context.scheduled[reader.process.name].core):
             return False
         return self._interrupts(reader, writer) and self._worst(reader.process) <= releases.period * self.unit
 

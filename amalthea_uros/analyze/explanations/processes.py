@@ -181,7 +181,7 @@ def execution_shares(context: TimingContext, name: str) -> list[ExecutionShare]:
         before = max_time(executed, time_base)
         time, reason = None, ""
         try:
-            demand = context.demand_model.of_activities(scheduled.process, activities, scheduled.core)
+            demand = context.execution_model(name).of_activities(scheduled.process, activities, scheduled.core)
             executed = Ticks(executed + demand.worst)
             time = max_time(executed, time_base) - before
         except UnknownError as error:
@@ -192,7 +192,7 @@ def execution_shares(context: TimingContext, name: str) -> list[ExecutionShare]:
                     name=kind, is_runnable=is_runnable, time=time, calls=len(activities), counter=counter, reason=reason
                 )
             )
-    whole = context.demands.get(name)
+    whole = context.stated_demand(name) if name in context.waiting else context.demands.get(name)
     rest = 0 if whole is None else max_time(whole.worst, time_base) - max_time(executed, time_base)
     return [*found, ExecutionShare(name=OVERHEADS, is_runnable=False, time=rest)] if rest > 0 else found
 
@@ -243,7 +243,7 @@ class _OriginSearch:
 
     def of(self, name: str) -> Iterator[Origin]:
         response = self.solution.responses.get(name)
-        if name in self.visited or (response is not None and response.worst is not None):
+        if name in self.solution.migrating or name in self.visited or (response is not None and response.worst is not None):
             return
         self.visited.add(name)
         if response is not None:

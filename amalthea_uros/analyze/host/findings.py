@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from amalthea_uros.analyze.host.handover import handed_over, violated
 from amalthea_uros.analyze.host.results import HostResults
-from amalthea_uros.errors import UnknownError
-from amalthea_uros.perf.network import plain_topic
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 
 _ASSUMPTIONS = (
@@ -17,11 +14,10 @@ _ASSUMPTIONS = (
 
 
 def add_findings(host: HostResults, collected: AnalysisNotes) -> None:
-    """Report executors without bounds, lost messages, and messages that are not as a controller expects them."""
+    """Report executors without bounds, and lost messages."""
     for sentence in _ASSUMPTIONS if host.executors else ():
         collected.assume(sentence)
-    releases = host.releases
-    for executor, result in zip(releases.topics.host.executors, host.executors, strict=True):
+    for executor, result in zip(host.releases.topics.host.executors, host.executors, strict=True):
         if result.reason:
             collected.warning(
                 "HST001", f"the response times in {result.name!r} of the host have no bound: {result.reason}", executor
@@ -30,10 +26,3 @@ def add_findings(host: HostResults, collected: AnalysisNotes) -> None:
             lost = result.handles[callback.name].lost
             if lost is not None:
                 collected.warning("HST002", f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}", callback)
-    for transmission in handed_over(releases):
-        try:
-            difference = violated(transmission, releases)
-        except UnknownError:
-            continue  # the executor has a finding, and the chain as well
-        if difference:
-            collected.error("HST004", difference, releases.topics.publishers(plain_topic(transmission.topic))[0])

@@ -2,7 +2,8 @@
 
 A subscription on a controller states an interval and a jitter. If callbacks of the host publish its topic, both follow from these: the
 controller is analysed with the interval of the host, and with the greater jitter. What the controller sends depends on that in turn,
-so that both sides are analysed until nothing changes (K. Richter 2005).
+so that both sides are analysed until nothing changes (K. Richter 2005). If no interval and jitter describe what the host sends, or
+the description contradicts itself, it is unknown how often the messages come, and so is everything that depends on them.
 """
 
 from __future__ import annotations
@@ -11,11 +12,13 @@ from dataclasses import replace
 
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.topics import HostTopics, delayed
+from amalthea_uros.analyze.host.unknown_times import why_unknown, with_unknown_times
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.distributions import Uniform
+from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
@@ -29,9 +32,11 @@ _MAX_PASSES = 30
 
 def solve_with_host(system: System, settings: Settings) -> Solution:
     """The solution in which messages of the host come as the host sends them; what was stated otherwise becomes a finding."""
-    solution = solve(timing_context(system, settings))
+    described, solution = system, solve(timing_context(system, settings))
     stated = solution.context.system
-    for _ in range(_MAX_PASSES if stated.host.executors else 0):
+    if not stated.host.executors:
+        return solution
+    for _ in range(_MAX_PASSES):
         releases = HostReleases(HostTopics(stated.host, solution)).solve()
         system = solution.context.system
         for transmission in handed_over(releases):
@@ -39,21 +44,50 @@ def solve_with_host(system: System, settings: Settings) -> Solution:
         if system is solution.context.system:
             break
         solution = solve(timing_context(system, settings))
-    _note_changes(stated, solution)
+    return _checked(described, stated, solution)
+
+
+def _checked(described: System, stated: System, solution: Solution) -> Solution:
+    """The solution with a finding about each message that is not as stated; unknown is what depends on those without known times."""
+    releases = HostReleases(HostTopics(stated.host, solution)).solve()
+    changed, errors, unknown = _changes(stated, solution), [], {}
+    for transmission in handed_over(releases):
+        topic = plain_topic(transmission.topic)
+        try:
+            if difference := violated(transmission, releases):
+                errors.append((difference, releases.topics.publishers(topic)[0]))
+                unknown[transmission] = difference
+        except UnknownError as error:
+            unknown[transmission] = f"it is not known how often the host sends {topic!r}: {error}"
+        for handle, after in changed:
+            if handle.transmission == transmission.name and handle.interval != after.interval:
+                unknown.setdefault(
+                    transmission, f"the host does not send {topic!r} in the interval that {handle.name!r} states"
+                )
+    system = solution.context.system
+    for transmission, reason in unknown.items():
+        system = with_unknown_times(system, transmission, reason, described)
+    if system is not solution.context.system:
+        solution = solve(timing_context(system, solution.context.settings))
+    for handle, after in changed:
+        solution.context.notes.warning("HST003", _change(handle, after), handle)
+    for difference, publisher in errors:
+        solution.context.notes.error("HST004", difference, publisher)
     return solution
 
 
-def _note_changes(stated: System, solution: Solution) -> None:
+def _changes(stated: System, solution: Solution) -> list[tuple[Handle, Handle]]:
+    """The subscriptions with other intervals or jitters than stated: as stated, and as analysed."""
     handles = {handle.name: handle for executor in solution.context.system.executors for handle in executor.handles}
-    for before in (handle for executor in stated.executors for handle in executor.handles):
-        after = handles[before.name]
-        if (before.interval, before.jitter) != (after.interval, after.jitter):
-            interval, jitter = time_text(after.interval or 0), time_text(after.jitter)
-            message = (
-                f"the host sends the messages of {before.name!r} every {interval} with a jitter of up to {jitter}, which is used "
-                "instead of what the subscription states"
-            )
-            solution.context.notes.warning("HST003", message, before)
+    pairs = ((handle, handles[handle.name]) for executor in stated.executors for handle in executor.handles)
+    return [(one, other) for one, other in pairs if (one.interval, one.jitter) != (other.interval, other.jitter)]
+
+
+def _change(stated: Handle, analysed: Handle) -> str:
+    message = f"the host sends the messages of {stated.name!r} every {time_text(analysed.interval or 0)}"
+    if stated.interval == analysed.interval:
+        return f"{message} with a jitter of up to {time_text(analysed.jitter)}, which is used instead of what the subscription states"
+    return f"{message}, but the subscription states {time_text(stated.interval or 0)}, so that what depends on them is unknown"
 
 
 def handed_over(releases: HostReleases) -> list[Transmission]:
@@ -69,12 +103,14 @@ def handed_over(releases: HostReleases) -> list[Transmission]:
 
 
 def violated(transmission: Transmission, releases: HostReleases) -> str:
-    """How the messages of the host differ from those that were analysed; "" if they do not.
+    """How the messages of the host differ from those that were analysed, or why these are unknown; "" if they do not.
 
     Raises
     ------
     UnknownError : it is not known how often they come.
     """
+    if reason := why_unknown(transmission, releases.topics.solved.context.system):
+        return reason
     topic, stated = plain_topic(transmission.topic), releases.topics.solved.event_models.get(transmission.name)
     real, agent = _sent_by_host(transmission, releases), _agent_jitter(transmission)
     if not isinstance(real, PeriodicEvents) or not isinstance(stated, PeriodicEvents):

@@ -81,7 +81,7 @@ def constant_responses(core: str, solution: Solution) -> Mapping[str, Response]:
 def _tasks(core: str, solution: Solution) -> Sequence[_ConstantTask]:
     """The tasks of a core of this kind, the most important one first; none for another one."""
     context = solution.context
-    if context.decisions or context.has_loops(core) or not solution.is_closed(core):
+    if context.decisions or context.has_loops_or_waits(core) or not solution.is_closed(core):
         return ()
     here = [item for item in context.served(core, None) if isinstance(item, ScheduledProcess)]
     if len({item.rank for item in here}) < len(context.served(core, None)) or SchedulePoint in context.system.activity_classes:

@@ -8,10 +8,12 @@ from itertools import groupby
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times import fixed_priority, priority_levels
 from amalthea_uros.analyze.response_times.blocking import Blocking
+from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, periodic_tasks
 from amalthea_uros.analyze.response_times.priority_levels import BlockedWindow
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
+from amalthea_uros.analyze.response_times.waits import beside_waits, shorter_by_segments
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
@@ -213,7 +215,20 @@ class _CoreAnalysis:
                     found[index] = fixed_priority.in_busy_period(tasks[index], merged, waits[index], supply, found[index])
         # The methods are exact for independent activations; offsets can make the worst case impossible.
         bounds = [replace(response, claim=Claim.BOUND) for response in found[: len(usable)]]
+        if self.context.has_waits(self.core):
+            bounds = self._beside_waits(bounds, tasks)
         return [self._without_iterations(item, response) for item, response in zip(usable, bounds, strict=True)]
+
+    def _beside_waits(self, bounds: Sequence[Response], tasks: Sequence[AnalysedTask]) -> list[Response]:
+        """The response times on a core with processes that wait for events, which is one without servers and blocking."""
+        results = []
+        for response, task in zip(bounds, tasks, strict=True):
+            waiting = self.context.waiting.get(task.name)
+            if waiting is not None:
+                others = [other for other in tasks if other is not task and other.priority >= task.priority]
+                response = shorter_by_segments(response, task, waiting, Interference.of(others))
+            results.append(beside_waits(response, task, waiting))
+        return results
 
     def _with_longest_paths(self, tasks: Sequence[AnalysedTask]) -> list[AnalysedTask]:
         """The tasks, and for those that exclude each other one that takes as long as the longest path of the job that triggers them."""
@@ -247,15 +262,18 @@ class _CoreAnalysis:
             demand = MultiframeDemand.constant(to_ticks(item.budget, self.time_base), best=Ticks(0))
         else:
             events, demand = self.solution.event_models[item.name], self.context.demands[item.name]
+        # Who is resumed need not precede those of its priority that came later.
+        has_order = not self.context.has_waits(self.core)
         return AnalysedTask(
             name=item.name,
             events=rescaled(events, self.time_base),
             demand=demand,
             priority=ranks.index(item.rank),
-            equal_priority=item.equal_priority,
+            equal_priority=item.equal_priority if has_order else EqualPriority.UNKNOWN,
             deadline=(item.deadline or 0) * self.time_base if item.equal_priority is EqualPriority.EDF else 0,
             slice=item.slice * self.time_base,
             activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,
+            is_alone=item.name in self.context.awaited_alone,
         )
 
 

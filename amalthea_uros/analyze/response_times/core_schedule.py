@@ -46,7 +46,7 @@ def periodic_tasks(core: str, solution: Solution) -> list[PeriodicTask]:
         len({item.rank for item in processes}) < len(here)
         or not all(solution.is_analysable(item.name) for item in processes)
         or not solution.is_closed(core)
-        or context.has_loops(core)
+        or context.has_loops_or_waits(core)
         or Blocking.of(processes, solution).is_possible
     ):
         return []

@@ -34,7 +34,7 @@ def certain_response(name: str, solution: Solution) -> Time | None:
     item = context.scheduled[name]
     served = context.served(item.core, None)
     here = [other for other in served if isinstance(other, ScheduledProcess)]
-    if len(here) < len(served) or context.decisions or context.has_loops(item.core) or not _is_plain(here, solution):
+    if len(here) < len(served) or context.decisions or context.has_loops_or_waits(item.core) or not _is_plain(here, solution):
         return None
     above = [other for other in here if other.rank > item.rank]
     if not _can_come_together([item, *above], solution):

@@ -66,7 +66,7 @@ def response_time(
         if window is None:
             break
         completions.append(window)
-        if window <= task.events.delta_min(job + 1):
+        if task.is_alone or window <= task.events.delta_min(job + 1):
             found = of_completions(task, completions, blocking, METHOD, SOURCE, claim)
             return replace(found, best=best), completions[0]
     reason = f"its busy window has more than {limit:,} jobs: tasks at this priority or higher need nearly all of the core"

@@ -38,7 +38,7 @@ def raised(core: str, solution: Solution) -> Mapping[str, Response]:
     context = solution.context
     here = [item for item in context.served(core, None) if isinstance(item, ScheduledProcess)]
     # Where schedulers take time to decide, a process is not ready at its release.
-    if context.decisions or context.has_loops(core) or len(here) < len(context.served(core, None)):
+    if context.decisions or context.has_loops_or_waits(core) or len(here) < len(context.served(core, None)):
         return {}
     if not all(solution.is_analysable(item.name) for item in here):
         return {}

@@ -36,7 +36,7 @@ def tightened(core: str, solution: Solution) -> Mapping[str, Response]:
     known = {item.name: item for item in here if _is_known(item, solution)}
     if len(known) < 2 or len(here) < len(solution.context.served(core, None)) or solution.context.decisions:
         return {}
-    if solution.context.has_loops(core) or not solution.is_closed(core):
+    if solution.context.has_loops_or_waits(core) or not solution.is_closed(core):
         return {}
     windows = _OffsetWindows.of(core, solution, here, known)
     return windows.tightened() if windows is not None else {}

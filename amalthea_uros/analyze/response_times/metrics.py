@@ -122,6 +122,8 @@ class MetricEvaluator:
     def _waits(self, name: str) -> bool:
         """Whether a job can wait once it executes; under a priority ceiling it does not wait for a semaphore."""
         context = self.solution.context
+        if name in context.waiting:
+            return True
         semaphores = context.touching.protection[name].semaphores
         is_scheduled = name in context.scheduled and self.solution.is_analysable(name)
         return bool(semaphores & context.open_semaphores if is_scheduled else semaphores)
@@ -131,7 +133,7 @@ class MetricEvaluator:
         response, bcet = process.response, process.bcet
         if bcet is None:
             return
-        # The net execution time includes waiting for semaphores; of what waits for anything else, the execution time is unknown.
+        # The net execution time includes waiting for semaphores, and polling for events.
         longest = process.wcet if not self._waits(process.name) else response.worst if response is not None else None
         yield JobMetric.NET_EXECUTION_TIME, Metric(min=bcet, max=longest)
         if process.min_interarrival is not None and process.name not in self.solution.losing:
@@ -151,7 +153,6 @@ class MetricEvaluator:
         yield JobMetric.GROSS_EXECUTION_TIME, Metric(min=bcet, max=worst)
         for metric in (JobMetric.INITIAL_PENDING_TIME, JobMetric.READY_TIME, JobMetric.PREEMPTION_TIME):
             yield metric, Metric(min=0, max=waiting)
-        # Processes that wait for events are unknown.
         yield JobMetric.WAITING_TIME, Metric(min=0, max=waiting) if self._waits(process.name) else _ZERO
         if process.name not in self.solution.losing:
             yield from _between_jobs(process, waiting, best, worst)

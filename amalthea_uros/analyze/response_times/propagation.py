@@ -14,7 +14,9 @@ from amalthea_uros.analyze.response_times.constant_schedule import constant_resp
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_best_cases import raised
 from amalthea_uros.analyze.response_times.known_offsets import tightened
+from amalthea_uros.analyze.response_times.several_cores import responses_on_several_cores
 from amalthea_uros.analyze.response_times.solution import Solution
+from amalthea_uros.analyze.response_times.waits import bound_waits, reasons_besides_waits, warn_of_unknown_waits
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.occurrences import ExecutorOccurrences, least_occurrences, occurrences
 from amalthea_uros.executors.semantics.loops import sleep_of, why_deferred, why_dense, workload
@@ -24,6 +26,7 @@ from amalthea_uros.perf.software import Process
 from amalthea_uros.timing.activation.activations import Output
 from amalthea_uros.timing.basics.time_base import MAX_INPUT, max_time
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import Delayed, EventModel, OutputEventModel, PeriodicEvents
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
@@ -36,7 +39,10 @@ MAX_JOBS = 50_000
 
 def solve(context: TimingContext) -> Solution:
     """All response times, computed until they no longer change activations."""
-    solution = Solution(context, reasons=dict(context.reasons))
+    migrating = responses_on_several_cores(context)
+    unbounded = {name: each.response.reason for name, each in migrating.items() if each.response.worst is None}
+    bounded = {name: each for name, each in migrating.items() if name not in unbounded}
+    solution = Solution(context, reasons={**reasons_besides_waits(context), **unbounded}, migrating=bounded)
     diverging: set[str] = set()
     while True:
         changing = _iterate(solution, diverging)
@@ -44,12 +50,16 @@ def solve(context: TimingContext) -> Solution:
             for core in context.system.cores:
                 solution.responses |= constant_responses(core, solution) or tightened(core, solution)
                 solution.responses |= raised(core, solution)
+            warn_of_unknown_waits(solution)
             return solution
         # Without the diverging processes and those that depend on them, the others can converge.
         diverging |= changing
         for name in changing:
             solution.mark_unknown(
-                name, "its response time and the jitter of the processes that it triggers increase each other without limit"
+                name,
+                "its response time and the time for which it waits increase each other without limit"
+                if name in context.waiting
+                else "its response time and the jitter of the processes that it triggers increase each other without limit",
             )
 
 
@@ -61,6 +71,7 @@ def _iterate(solution: Solution, diverging: set[str]) -> set[str]:
     for number in range(MAX_ROUNDS):
         previous, known_reasons, activations = responses, len(solution.reasons), solution.event_models
         executors = _executor_occurrences(solution, previous if number else None)
+        bound_waits(solution, previous)
         solution.event_models = _event_models(solution, diverging, previous, executors)
         responses = {}
         for core in solution.context.system.cores:
@@ -90,15 +101,16 @@ def _executor_occurrences(solution: Solution, responses: Mapping[str, Response] 
 
 @dataclass(frozen=True, slots=True)
 class _CoreRound:
-    """The response times on a core, and the activations that they follow from; None for those that are unknown."""
+    """The response times on a core, and the activations and demands that they follow from; None for those that are unknown."""
 
-    activations: Sequence[EventModel | None]
+    activations: Sequence[tuple[EventModel | None, MultiframeDemand | None]]
     responses: Mapping[str, Response]
 
 
 def _round_on(core: str, solution: Solution, previous: _CoreRound | None) -> _CoreRound:
     """The response times on a core; those of the previous step if its activations have not changed."""
-    activations = [solution.event_models.get(scheduled.name) for scheduled in solution.context.on_core(core)]
+    names = [scheduled.name for scheduled in solution.context.on_core(core)]
+    activations = [(solution.event_models.get(name), solution.context.demands.get(name)) for name in names]
     if previous is not None and activations == previous.activations:
         return previous
     return _CoreRound(activations, responses_on(core, solution))

@@ -21,6 +21,7 @@ from amalthea_uros.units import Time
 if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
     from amalthea_uros.analyze.response_times.executor_threads import ExecutorThread
+    from amalthea_uros.analyze.response_times.several_cores import MigratingResult
 
 
 @dataclass
@@ -31,6 +32,7 @@ class Solution:
     ----------
     event_models : activations, by the names of processes
     reasons : why the response time of a process is unknown
+    migrating : the tasks that any of several cores executes; `responses` has only those with a core
     schedules : of the cores of which it is known and not too long
     """
 
@@ -39,6 +41,7 @@ class Solution:
     responses: dict[str, Response] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     schedules: dict[str, CoreSchedule] = field(default_factory=dict, repr=False)
+    migrating: Mapping[str, MigratingResult] = field(default_factory=dict, repr=False)
     _threads: dict[str, ExecutorThread] = field(default_factory=dict, repr=False)
 
     def schedule(self, core: str, with_slices: bool = False) -> CoreSchedule | None:

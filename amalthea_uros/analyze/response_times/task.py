@@ -30,6 +30,7 @@ class AnalysedTask:
     equal_priority : how tasks of the same priority are served; equal for all of them
     deadline : relative to the activation; used by EDF
     slice : length of a time slice; used by round robin
+    is_alone : whether each job is activated only after the one before it has executed all of its demand
     activation_limit : the number of jobs that can wait at most; further activations are lost
     """
 
@@ -41,6 +42,7 @@ class AnalysedTask:
     deadline: Time = 0
     slice: Time = 0
     activation_limit: int = 1
+    is_alone: bool = False
 
     @classmethod
     def of(cls, item: ScheduledProcess, solution: Solution) -> AnalysedTask:

@@ -10,6 +10,7 @@ from amalthea_uros.bridge.basics.codecs import (
     PLAIN,
     TIME,
     TIMES,
+    Codec,
     all_references,
     build_time,
     marked,
@@ -23,7 +24,7 @@ from amalthea_uros.bridge.tables.conditions import ASSIGNMENTS, CONDITION
 from amalthea_uros.bridge.tables.distributions import NUMBER, TIME_SPAN
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
-from amalthea_uros.metamodel.magnitudes import picoseconds
+from amalthea_uros.metamodel.magnitudes import in_one_unit, picoseconds
 from amalthea_uros.perf import stimuli as perf
 
 #: AMALTHEA has no attribute for the source of a counter; the key also says whether the phase is known.
@@ -95,6 +96,14 @@ _POINTS = ClassTable(
 )
 
 
+def _build_distance(value: Any, context: Building) -> Any:
+    """INCHRON's importer takes the two bounds as if they had the same unit (am2inc, stimuliModel.cpp)."""
+    made = TIME_SPAN.build(value, context)
+    if isinstance(made, am.TimeUniformDistribution) and made.lower_bound and made.upper_bound:
+        in_one_unit(made.lower_bound, made.upper_bound)
+    return made
+
+
 class _StimulusTable(ClassTable):
     """Stimuli; what is incomplete activates at an unknown rate, like a custom one."""
 
@@ -110,7 +119,7 @@ STIMULI: ClassTable = _StimulusTable(
         perf.RelativePeriodic,
         am.RelativePeriodicStimulus,
         offset=TIME,
-        distance=("next_occurrence", TIME_SPAN),
+        distance=("next_occurrence", Codec(_build_distance, TIME_SPAN.extract)),
         has_maximum=("custom_properties", marked("maximumKnown", default=True)),
         **_COMMON,
     ),

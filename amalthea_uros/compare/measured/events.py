@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.steps import iterations_name
@@ -20,6 +21,7 @@ from amalthea_uros.trace.readers import format_of, open_trace
 from amalthea_uros.trace.table import EventKind
 
 if TYPE_CHECKING:
+    from amalthea_uros.trace.reading import TraceReader
     from amalthea_uros.trace.table import EventTable
 
 
@@ -34,9 +36,11 @@ AT_HOST = (
 def begins_of(system: System) -> ModelBegins:
     """With which events the chains and the jobs of a system begin."""
     return ModelBegins(
-        chains=dict(_chain_begins(system)),
+        chains={**dict.fromkeys(receptions(system.host), EventKind.CHAIN_STEP), **dict(_chain_begins(system))},
         iterations={task: iterations_name(executor.name) for task, executor in system.executor_of_task.items()},
-        callbacks=frozenset(handle.runnable for executor in system.executors for handle in executor.handles),
+        callbacks=system.host.callback_names.union(
+            handle.runnable for executor in system.executors for handle in executor.handles
+        ),
     )
 
 
@@ -90,14 +94,18 @@ def measured_events(path: Path, window: MeasurementWindow, begins: ModelBegins) 
     ReadError : the file cannot be read.
     InvalidArgumentError : its format is not known.
     """
+    return measured_by(open_trace(path), path, window, begins)
+
+
+def measured_by(reader: TraceReader, path: Path, window: MeasurementWindow, begins: ModelBegins) -> Measurement:
+    """Measure what a reader gives; parameters and errors as for `measured_events`."""
     import numpy as np
 
     from amalthea_uros.measure.chains import ChainSteps
     from amalthea_uros.measure.jobs import JobFollower
     from amalthea_uros.measure.window import resolution_of
 
-    reader = open_trace(path)
-    jobs, chains = JobFollower(begins=begins), ChainSteps(begins.chains)
+    jobs, chains = JobFollower(begins=begins), ChainSteps(begins.chains, reader.begin_of_chains)
     origin: int | None = None
     times = []
     for table in reader:

@@ -140,6 +140,8 @@ def matching(target: str, keys: Sequence[DescriptionKey]) -> list[DescriptionKey
     'middleware.executor.uros_task.loop.sleep'
     """
     target = _OTHER_WORDS.get(target, target)
+    if whole := [key for key in keys if key.full_name == target]:
+        return whole
     gaps = [(gap, key) for key in keys if (gap := _gap(target, key.names)) is not None]
     if not gaps:
         folded = target.casefold()

@@ -21,7 +21,6 @@ from amalthea_uros.spec.processes import ProcessSection
 from amalthea_uros.spec.transports import Interrupt
 from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros.application import callbacks as uros
-from amalthea_uros.uros.application.callbacks import handle_count
 from amalthea_uros.uros.application.messages import Message
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.executor_runnables import message_cost, timer_count
@@ -178,7 +177,7 @@ class Places:
             )
         is_mapping = "base" in cost.model_fields_set and cost.location("base") != cost.location()
         served = [each for each in self.callbacks if each.executor == section.name]
-        checked = [*[cost.per_timer] * timer_count(served), *[cost.per_handle] * sum(map(handle_count, served))]
+        checked = [*[cost.per_timer] * timer_count(served), *[cost.per_handle] * sum(each.handles for each in served)]
         return ((*path, "base") if is_mapping or parts else path), cost.base, _constant(checked, owner.name)
 
     def _serving(self, owner: Owner) -> tuple[Path, ExecutorSection]:

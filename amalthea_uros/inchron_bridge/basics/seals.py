@@ -17,7 +17,7 @@ from amalthea_uros.metamodel.factfile import FeatureKind
 
 #: The key of the seal in a comment, and the keys of what it seals.
 _SEAL = "seal"
-SEALED = ("activity", "stimulus", "chain", "limit", "hardware", "counter", "group", "condition")
+SEALED = ("activity", "stimulus", "chain", "limit", "hardware", "counter", "group", "condition", "synchronized")
 
 #: Features that say nothing about the object itself: what it activates, its name in the file, and what it is said to be.
 _OTHERS = {"intrinsicId", "comment", "targets", "callGraph", "users", "activators"}

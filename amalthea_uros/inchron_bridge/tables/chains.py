@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
-from amalthea_uros.inchron_bridge.basics.comments import keep_whole
+from amalthea_uros.inchron_bridge.basics.comments import keep_whole, note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.perf import events as perf
+from amalthea_uros.perf.constraints import ChainEnd, ChainSynchronization
+from amalthea_uros.timing.dataflow.chains import Fork, Unfolded, unfold
 
 #: The trace event of each transition; transitions without one cannot be observed there.
 PROCESS_EVENTS = {
@@ -24,9 +25,8 @@ LABEL_EVENTS = {perf.LabelChange.READ: "read", perf.LabelChange.WRITE: "write"}
 TRACE_EVENT, BARRIER = "EventGraphTraceEvent", "EventGraphSynchronizationBarrier"
 #: The key of a chain in the comment of its graph.
 CHAIN = "chain"
-
-#: Chains that contain each other would never end.
-_DEPTH = 50
+#: The key in the comment of a graph that only serves a limit, whose comment says what is meant.
+SYNCHRONIZED = "synchronized"
 
 
 def trace_event(event: perf.Event | None, context: Exporting) -> tuple[ProjectObject, ProjectObject | None]:
@@ -56,40 +56,35 @@ def trace_event(event: perf.Event | None, context: Exporting) -> tuple[ProjectOb
     return result, context.find("Process", process) if process else None
 
 
-@dataclass(slots=True)
-class _Ends:
-    """The nodes that a part of a chain begins and ends with."""
-
-    first: ProjectObject
-    last: ProjectObject
-
-
 def build_chains(context: Exporting) -> None:
     """Make the graphs; chains that cannot be one are reported."""
     for chain in context.system.events.chains:
         graph = ProjectObject("EventGraph", name=chain.name)
         try:
+            events, left_out = unfold(chain, context.system)
             builder = _ChainGraph(graph, context)
-            ends = builder.build(chain, 0)
+            builder.build(events)
         except UnknownError as error:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
             continue
-        graph["initialNode"], graph["terminalNodes"] = ends.first, [ends.last]
-        if not builder.is_exact or not is_plain(chain):
+        if left_out:
+            context.changed(chain, "a part with other ends than its chain", "with those of the chain")
+        if not builder.is_exact or events != plain_events(chain):
             keep_whole(graph, CHAIN, chain)
         context.model.add("eventChains", context.register("EventGraph", chain.name, graph))
 
 
-def is_plain(chain: perf.EventChain) -> bool:
-    """Whether a graph alone says everything of a chain: a sequence of steps without gaps and names."""
+def plain_events(chain: perf.EventChain) -> tuple[str | None, ...]:
+    """The events of a chain of which a graph alone says everything: a sequence of steps without gaps and names; else nothing."""
     if chain.items is None:
-        return True
+        return (chain.stimulus, chain.response)
     ends = [chain.stimulus]
     for item in chain.items.items:
         if not isinstance(item, perf.Segment) or item.items is not None or item.name or item.stimulus != ends[-1]:
-            return False
+            return ()
         ends.append(item.response)
-    return isinstance(chain.items, perf.Sequence) and len(ends) > 2 and ends[-1] == chain.response
+    is_line = isinstance(chain.items, perf.Sequence) and len(ends) > 2 and ends[-1] == chain.response
+    return tuple(ends) if is_line else ()
 
 
 class _ChainGraph:
@@ -104,93 +99,55 @@ class _ChainGraph:
         self.graph = graph
         self.context = context
         self.names: set[str] = set()
+        self.inner: list[tuple[ProjectObject, str]] = []
         self.is_exact = True
 
-    def build(self, chain: perf.EventChain, depth: int) -> _Ends:
-        """The whole, between its stimulus and its response."""
-        inner = self.inner(chain.items, chain, depth)
-        first, last = self.event(chain.stimulus), self.event(chain.response)
-        self.link(first, inner, last)
-        return _Ends(first, last)
+    def build(self, events: Unfolded) -> None:
+        """Make the nodes: first those inside, then the stimulus, then the response, as the importer of INCHRON orders them."""
+        first, *inside = events
+        if isinstance(first, Fork):
+            raise UnknownError("it begins with one of several events, and a graph begins with one")
+        start, last = self.event(first), inside.pop()
+        before = self.line(tuple(inside), start)
+        ends = {name: link(self.event(name), self.line(branch, before)) for branch, name in joint_ends(last)}
+        for node, name in (*self.inner, (start, first), *((node, name) for name, node in ends.items())):
+            node["name"] = self.free(name)
+            self.graph.add("nodes", node)
+        self.graph["initialNode"], self.graph["terminalNodes"] = start, ends.values()
 
-    def link(self, first: ProjectObject, inner: list[list[ProjectObject]], last: ProjectObject) -> None:
-        """Link branches, each a list of nodes in order, between two nodes; a barrier joins several branches."""
-        target = last
-        if len(inner) > 1:
-            target = inner.pop()[0]
-            last.add("predecessors", target)
-        for branch in inner or [[]]:
-            before = first
-            for node in branch:
-                node.add("predecessors", before)
-                before = node
-            target.add("predecessors", before)
+    def line(self, events: Unfolded, before: ProjectObject) -> ProjectObject:
+        """Make the nodes after another one; returns the last one."""
+        for event in events:
+            if isinstance(event, Fork):
+                before = self.fork(event, before)
+                continue
+            node = self.event(event)
+            self.inner.append((node, event))
+            before = link(node, before)
+        return before
 
-    def inner(
-        self, items: perf.Sequence | perf.Parallel | None, chain: perf.EventChain | perf.Segment, depth: int
-    ) -> list[list[ProjectObject]]:
-        """The branches between the ends; the last one of several is the barrier that joins them."""
-        if depth > _DEPTH:
-            raise UnknownError("it contains itself")
-        if items is None or not items.items:
-            return []
-        parts = [self.part(item) for item in items.items]
-        if isinstance(items, perf.Sequence):
-            return [self.sequence(parts, depth)]
-        if len(parts) == 1:
-            return self.inner(parts[0].items, parts[0], depth + 1)
-        branches = []
-        for part in parts:
-            if (part.stimulus, part.response) != (chain.stimulus, chain.response):
-                raise UnknownError("a branch of it begins or ends with another event")
-            nested = self.inner(part.items, part, depth + 1)
-            if len(nested) > 1:
-                raise UnknownError("a branch of it has branches")
-            branches.append(nested[0] if nested else [])
-        most = min(max(items.completed, 0), len(branches))
-        barrier = ProjectObject(BARRIER, name=self.free(f"{self.graph.name}_sync"), minItems=most)
-        self.graph.add("nodes", barrier)
-        return [*branches, [barrier]]
+    def fork(self, fork: Fork, before: ProjectObject) -> ProjectObject:
+        """The branches, and the barrier that joins them; 0 stands for all, which is what a set of events needs."""
+        ends = [self.line(branch, before) for branch in fork.branches]
+        # Branches without steps of their own are complete at once: one link stands for all of them.
+        direct = max(sum(end is before for end in ends) - 1, 0)
+        needed = 0 if fork.name else max(fork.needed - direct, 1)
+        barrier = ProjectObject(BARRIER, minItems=needed)
+        for end in dict.fromkeys(ends):
+            link(barrier, end)
+        self.inner.append((barrier, f"{fork.name or self.graph.name}_sync"))
+        return barrier
 
-    def sequence(self, parts: list[perf.EventChain | perf.Segment], depth: int) -> list[ProjectObject]:
-        """The nodes of a sequence, from the stimulus of the second part on, as the importer of INCHRON reads it."""
-        nodes: list[ProjectObject] = []
-        for number, part in enumerate(parts):
-            if number:
-                nodes.append(self.event(part.stimulus))
-                if parts[number - 1].response != part.stimulus:
-                    self.context.changed(self.graph, "a sequence with a gap", "with the stimulus of each part only")
-            nested = self.inner(part.items, part, depth + 1)
-            if len(nested) > 1:
-                raise UnknownError("a part of it has branches")
-            nodes += nested[0] if nested else []
-        return nodes
-
-    def part(self, item: perf.ChainItem) -> perf.EventChain | perf.Segment:
-        """A part of the chain, wherever it is described."""
-        if isinstance(item, perf.Segment):
-            return item
-        result = self.context.system.chains.get(item.chain)
-        if result is None:
-            raise UnknownError(f"it contains the undefined chain {item.chain!r}")
-        return result
-
-    def event(self, name: str | None) -> ProjectObject:
-        """A node for an event; for a set of events, refused, as it has several nodes."""
-        event = self.context.system.events_by_name.get(name or "")
-        if isinstance(event, perf.EventSet) and len(event.events) == 1:
-            event = self.context.system.events_by_name.get(event.events[0])
-        if isinstance(event, perf.EventSet):
-            raise UnknownError(f"it contains the set of events {event.name!r}")
-        if event is None:
-            raise UnknownError("one of its events is not stated")
+    def event(self, name: str) -> ProjectObject:
+        """A node for an event, without its name."""
+        event = self.context.system.events_by_name[name]
         result, process = trace_event(event, self.context)
         if isinstance(event, perf.StimulusEvent) or (isinstance(event, perf.LabelEvent) and event.runnable is not None):
             self.is_exact = False
             self.context.lost(event, "what an event is restricted to, or a stimulus as an event,")
-        node = ProjectObject(TRACE_EVENT, name=self.free(event.name))
+        node = ProjectObject(TRACE_EVENT)
         node["first"] = ProjectObject("ConditionalTraceEvent", traceEvent=result, process=process)
-        return self.graph.add("nodes", node)
+        return node
 
     def free(self, name: str) -> str:
         """A name that no node of the chain has."""
@@ -199,3 +156,38 @@ class _ChainGraph:
             name, number = f"{own}_{number}", number + 1
         self.names.add(name)
         return name
+
+
+def joint_ends(last: str | Fork) -> list[tuple[Unfolded, str]]:
+    """The events that have to occur at the end, each after what is in its branch: a requirement may be about several steps."""
+    if isinstance(last, str):
+        return [((), last)]
+    ends = [(branch[:-1], branch[-1]) for branch in last.branches if branch and isinstance(branch[-1], str)]
+    result = [(before, str(name)) for before, name in ends]
+    if last.needed < len(last.branches) or len({name for _, name in result}) < len(last.branches):
+        raise UnknownError("it ends with one of several events")
+    return result
+
+
+def build_synchronized(limit: ChainSynchronization, context: Exporting) -> ProjectObject:
+    """A graph of chains that begin with the same event, each of which ends with a step of its own.
+
+    Raises
+    ------
+    UnknownError : the chains have no such graph.
+    """
+    chains = [context.system.chains.get(name) for name in limit.chains]
+    lines = [unfold(chain, context.system)[0] for chain in chains if chain is not None]
+    if limit.end is not ChainEnd.RESPONSE or len({line[0] for line in lines}) != 1 or None in chains:
+        raise UnknownError("its chains do not begin with the same event and end together")
+    graph = ProjectObject("EventGraph", name=f"{limit.name}_chains")
+    _ChainGraph(graph, context).build((lines[0][0], Fork(tuple(line[1:] for line in lines), len(lines))))
+    note(graph, **{SYNCHRONIZED: True})
+    context.model.add("eventChains", graph)
+    return graph
+
+
+def link(node: ProjectObject, before: ProjectObject) -> ProjectObject:
+    """Let a node follow another one; returns the node."""
+    node.add("predecessors", before)
+    return node

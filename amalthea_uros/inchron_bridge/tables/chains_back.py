@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
+from contextlib import suppress
+from dataclasses import replace
 from typing import Any, get_args
 
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.seals import is_sealed
 from amalthea_uros.inchron_bridge.tables.chains import (
-    BARRIER,
     CHAIN,
     LABEL_EVENTS,
     PROCESS_EVENTS,
     RUNNABLE_EVENTS,
-    TRACE_EVENT,
+    SYNCHRONIZED,
 )
+from amalthea_uros.inchron_bridge.tables.graphs_back import GraphRoute, Join, routes_of
 from amalthea_uros.perf import events as perf
 
 _PROCESS = {name: change for change, name in PROCESS_EVENTS.items()}
 _RUNNABLE = {name: change for change, name in RUNNABLE_EVENTS.items()}
 _LABEL = {name: change for change, name in LABEL_EVENTS.items()}
-#: Most nodes of a chain; a graph that is damaged could have a circle.
-_MOST_NODES = 10_000
 
 
 class EventsReader:
@@ -32,7 +33,9 @@ class EventsReader:
     Attributes
     ----------
     events : all of them
-    chains : names of the graphs that are understood
+    result : the chains
+    chains : names of the chains of each graph
+    routes : the steps of each graph that is read, rather than what its comment keeps
     """
 
     def __init__(self, context: Importing, model: ProjectObject) -> None:
@@ -40,23 +43,29 @@ class EventsReader:
         self.model = model
         self.events: list[Any] = []
         self.names: dict[Any, str] = {}
-        self.chains: dict[ProjectObject, str] = {}
+        self.result: list[perf.EventChain] = []
+        self.chains: dict[ProjectObject, tuple[str, ...]] = {}
+        self.routes: dict[ProjectObject, tuple[GraphRoute, ...]] = {}
 
-    def read(self) -> perf.Events:
+    def read(self) -> None:
         """Read all."""
         for event in self.context.list_of(self.model, "events", get_args(perf.Event)):
             self.events.append(event)
             self.names.setdefault(_meaning(event), event.name)
         known = {event.name for event in self.events}
-        result = []
         for item in self.model["eventChains"]:
-            chain = self.chain(item)
-            if chain is not None:
-                self.chains[item] = chain.name
-                result.append(chain)
+            if SYNCHRONIZED in self.context.noted(item) and is_sealed(item):
+                continue
+            made = self.chains_of(item)
+            self.chains[item] = tuple(chain.name for chain in made)
+            self.result += made
+        taken = {chain.name for chain in self.result}
         kept = self.context.list_of(self.model, "chains", (perf.EventChain,))
-        result += [chain for chain in kept if _events_of(chain) <= known and chain.name not in self.chains.values()]
-        return perf.Events(events=tuple(self.events), chains=tuple(result))
+        self.result += [chain for chain in kept if _events_of(chain) <= known and chain.name not in taken]
+
+    def events_and_chains(self) -> perf.Events:
+        """All of them, with those that requirements needed."""
+        return perf.Events(events=tuple(self.events), chains=tuple(self.result))
 
     def event(self, trace_event: ProjectObject | None, process: ProjectObject | None, wish: str) -> str:
         """The name of the event for a trace event.
@@ -80,94 +89,112 @@ class EventsReader:
                 result = perf.LabelEvent(name=wish, label=name, change=_LABEL[change.lower()], process=where)
         if result is None:
             raise UnknownError(f"the trace event {trace_event.name if trace_event is not None else ''!r} is not understood")
-        meaning = _meaning(result)
+        return self.added(result)
+
+    def added(self, event: Any) -> str:
+        """The name of the event that means the same; if there is none, it is added under a free name."""
+        meaning = _meaning(event)
         if meaning not in self.names:
-            taken = {event.name for event in self.events}
-            name, number = wish, 0
+            taken = {each.name for each in self.events}
+            name, number = event.name, 0
             while name in taken:
-                name, number = f"{wish}_{number}", number + 1
+                name, number = f"{event.name}_{number}", number + 1
             self.names[meaning] = name
-            self.events.append(type(result)(**{**_fields(result), "name": name}))
+            self.events.append(replace(event, name=name))
         return self.names[meaning]
 
-    def chain(self, item: ProjectObject) -> perf.EventChain | None:
-        """The chain of a graph; None, with a finding, if it is not a line or joined by one barrier."""
+    def chains_of(self, item: ProjectObject) -> list[perf.EventChain]:
+        """The chains of a graph, one for each route that its decisions choose; without events, with a finding, if it is not understood.
+
+        A chain without events has no latency, so that limits of it stay unknown.
+        """
         if item.kind != "EventGraph":
             self.context.leave_out(item)
-            return None
         name = self.context.name("EventGraph", item)
         origin = self.context.location(item)
         kept = self.context.whole(item, CHAIN, (perf.EventChain,))
         known = {event.name for event in self.events}
         if kept is not None and _events_of(kept) <= known:
-            return perf.EventChain(name=name, stimulus=kept.stimulus, response=kept.response, items=kept.items, origin=origin)
+            with suppress(UnknownError):
+                self.routes[item] = tuple(routes_of(item).values())
+            return [perf.EventChain(name=name, stimulus=kept.stimulus, response=kept.response, items=kept.items, origin=origin)]
+        if item.kind != "EventGraph":
+            return [perf.EventChain(name=name, origin=origin)]
         try:
-            branches, completed = _GraphWalk(item).branches()
-            lines = [[self.step(node) for node in branch] for branch in branches]
+            routes = routes_of(item)
+            result = [self.chain(f"{name}_{choice}" if choice else name, route, origin) for choice, route in routes.items()]
         except UnknownError as error:
             self.context.note("INC006", f"the event chain {item.name!r} is left out: {error}", item)
-            return None
-        first, last = lines[0][0], lines[0][-1]
-        if len(lines) == 1:
-            return perf.EventChain(name=name, stimulus=first, response=last, items=_sequence(lines[0]), origin=origin)
-        parts = tuple(perf.Segment(stimulus=first, response=last, items=_sequence(line)) for line in lines)
-        items = perf.Parallel(items=parts, completed=completed or len(parts))
-        return perf.EventChain(name=name, stimulus=first, response=last, items=items, origin=origin)
+            return [perf.EventChain(name=name, origin=origin)]
+        if len(result) > 1:
+            message = f"the event chain {item.name!r} has decisions; it is read as {', '.join(each.name for each in result)}"
+            self.context.note("INC009", message, item, Severity.INFO)
+        self.routes[item] = tuple(routes.values())
+        return result
 
-    def step(self, node: ProjectObject) -> str:
-        """The event of a node."""
-        first = node["first"]
-        if first is None or not first["consumePredecessor"] or first["valueConstraint"]:
-            raise UnknownError(f"the step {node.name!r} has a condition")
-        return self.event(first["traceEvent"], first["process"], node.name)
+    def part(self, graph: ProjectObject, number: int, start: ProjectObject, end: ProjectObject) -> str:
+        """The name of a chain that is a part of one of the routes of a graph, from one step to another.
 
+        Raises
+        ------
+        UnknownError : the steps are within branches, or the other way round.
+        """
+        route, whole = self.routes[graph][number], self.chains[graph][number]
+        if start not in route or end not in route or route.index(start) >= route.index(end):
+            raise UnknownError("it is about steps within branches of its event chain, or not in their order")
+        steps = route[route.index(start) : route.index(end) + 1]
+        name = f"{whole}_{route.index(start)}_{route.index(end)}"
+        if name not in {chain.name for chain in self.result}:
+            self.result.append(self.chain(name, steps, self.context.location(graph)))
+        return name
 
-class _GraphWalk:
-    """The nodes of a graph from its initial to its terminal node."""
+    def chain(self, name: str, route: GraphRoute, origin: Any) -> perf.EventChain:
+        """The chain of a route."""
+        first, *inside = self.named(route)
+        if not inside:
+            return perf.EventChain(name=name, stimulus=str(first), response=str(first), origin=origin)
+        last = inside.pop()
+        response = last if isinstance(last, str) else self.joint(f"{name}_end", last)
+        return perf.EventChain(
+            name=name, stimulus=str(first), response=response, items=_items(str(first), inside, response), origin=origin
+        )
 
-    def __init__(self, graph: ProjectObject) -> None:
-        self.graph = graph
-        self.after: dict[ProjectObject, list[ProjectObject]] = {}
-        for node in graph["nodes"]:
-            for before in node["predecessors"]:
-                self.after.setdefault(before, []).append(node)
+    def named(self, route: GraphRoute) -> list[Any]:
+        """A route with the names of events."""
+        return [
+            Join(tuple(tuple(self.named(branch)) for branch in each.branches), each.needed)
+            if isinstance(each, Join)
+            else self.event(each["traceEvent"], each["process"], each.owner.name if each.owner is not None else "")
+            for each in route
+        ]
 
-    def branches(self) -> tuple[list[list[ProjectObject]], int]:
-        """The lines from the first to the last node, and how many of them have to complete."""
-        graph = self.graph
-        first, ends = graph["initialNode"], graph["terminalNodes"]
-        if first is None or len(ends) != 1 or any(node.kind not in (TRACE_EVENT, BARRIER) for node in graph["nodes"]):
-            raise UnknownError("it has several ends, or nodes that are neither trace events nor barriers")
-        barriers = [node for node in graph["nodes"] if node.kind == BARRIER]
-        starts = self.after.get(first, [])
-        if first is ends[0] and not starts:
-            return [[first]], 1
-        lines = [self.line(first, start, ends[0]) for start in starts]
-        if not lines or len(barriers) > 1 or (len(lines) > 1) != bool(barriers):
-            raise UnknownError("it is neither a line nor branches that one barrier joins")
-        if sum(len(line) - 2 for line in lines) + 2 != len(graph["nodes"]) - len(barriers):
-            raise UnknownError("not all of its nodes are on a way to its end")
-        return lines, barriers[0]["minItems"] if barriers else 1
-
-    def line(self, first: ProjectObject, start: ProjectObject, end: ProjectObject) -> list[ProjectObject]:
-        """The trace events from the first node along one branch."""
-        result, node = [first], start
-        for _ in range(_MOST_NODES):
-            if node.kind == TRACE_EVENT:
-                result.append(node)
-            if node is end:
-                return result
-            following = self.after.get(node, [])
-            if len(following) != 1:
-                raise UnknownError("it branches within a branch, or ends early")
-            node = following[0]
-        raise UnknownError("it has a circle")
+    def joint(self, wish: str, ends: Join) -> str:
+        """The name of the set of events that all have to occur at the end of a chain."""
+        return self.added(perf.EventSet(name=wish, events=tuple(str(branch[0]) for branch in ends.branches)))
 
 
-def _sequence(names: list[str]) -> perf.Sequence | None:
-    if len(names) < 3:
+def _items(before: str | None, parts: list[Any], after: str | None) -> perf.Sequence | perf.Parallel | None:
+    """The parts between two events; None stands for an end without an event."""
+    if not parts:
         return None
-    return perf.Sequence(tuple(perf.Segment(stimulus=a, response=b) for a, b in pairwise(names)))
+    if len(parts) == 1 and isinstance(parts[0], Join):
+        branches = [
+            perf.Segment(stimulus=before, response=after, items=_items(before, list(branch), after))
+            for branch in parts[0].branches
+        ]
+        return perf.Parallel(items=tuple(branches), completed=parts[0].needed)
+    segments: list[perf.Segment] = []
+    start, pending = before, list[Any]()
+    for part in (*parts, after):
+        if isinstance(part, Join):
+            if pending:
+                segments.append(perf.Segment(stimulus=start, items=_items(start, pending, None)))
+                start = None
+            pending = [part]
+            continue
+        segments.append(perf.Segment(stimulus=start, response=part, items=_items(start, pending, part)))
+        start, pending = part, []
+    return perf.Sequence(tuple(segments))
 
 
 def _meaning(event: Any) -> Any:

@@ -178,3 +178,15 @@ def _local_interconnect(cpu: ProjectObject, several: bool) -> ProjectObject | No
 def _join(initiator: ProjectObject | None, responder: ProjectObject) -> None:
     if initiator is not None:
         initiator["responder"] = responder
+
+
+def leave_out_memories(model: ProjectObject) -> None:
+    """Remove memories, caches, interconnects and ports, as the importer of INCHRON does if asked to."""
+    for item in list(model.walk()):
+        for feature in {
+            "Model": ("memories", "interconnects"),
+            "Cpu": ("memories", "interconnects"),
+            "CpuCore": ("initiator",),
+            "memory.DataObject": ("memory",),
+        }.get(item.kind, ()):
+            item.values.pop(feature, None)

@@ -12,6 +12,8 @@ from amalthea_uros.units import SECOND, Frequency
 
 HARDWARE = "hardware"
 
+_LOADS = ("hypervisor", "peripherals")
+
 
 def extract_hardware(context: Importing, model: ProjectObject) -> perf.Hardware:
     """Clocks, and each processor as a structure with its cores and memories."""
@@ -51,9 +53,20 @@ def _clock(clock: ProjectObject, context: Importing) -> perf.Clock:
     return perf.Clock(name=clock.name, frequency=clock_frequency(clock), origin=context.located(clock))  # type: ignore[arg-type]
 
 
+def loads_of_processors(model: ProjectObject) -> list[ProjectObject]:
+    """Hypervisors and peripherals, which may take time of the cores of their processor, and are not understood."""
+    return [part for cpu in model["cpus"] for feature, part in cpu.parts() if feature.name in _LOADS]
+
+
+def cores_beside(item: ProjectObject) -> list[ProjectObject] | None:
+    """The cores of the processor that an object belongs to; None if it belongs to none."""
+    cpu = item.owner if item.owner is not None and item.owner.kind == "Cpu" else None
+    return None if cpu is None else [*cpu["cores"], *(item["virtualCores"] if item.kind == "HyperVisorConfig" else ())]
+
+
 def _structure(cpu: ProjectObject, context: Importing) -> perf.Structure:
     memories = [memory for memory in cpu["memories"] if memory.kind == "memory.Memory"]
-    for feature in ("hypervisor", "peripherals", "partitions", "memoryRegions"):
+    for feature in (*_LOADS, "partitions", "memoryRegions"):
         if cpu[feature]:
             context.leave_out(cpu, f"Cpu.{feature}")
     return perf.Structure(

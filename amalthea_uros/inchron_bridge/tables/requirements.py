@@ -10,7 +10,7 @@ from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import keep_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time
-from amalthea_uros.inchron_bridge.tables.chains import trace_event
+from amalthea_uros.inchron_bridge.tables.chains import build_synchronized, trace_event
 from amalthea_uros.perf import constraints as perf
 
 #: The key of a limit in the comment of the requirement that stands for it.
@@ -116,17 +116,21 @@ def _repetition(limit: perf.RepetitionConstraint, context: Exporting) -> Project
     )
 
 
-def _synchronization(limit: perf.EventSynchronization, context: Exporting) -> ProjectObject:
-    events = [_event(name, context) for name in limit.events]
-    group = ProjectObject("requirement.GroupOfRequirements", name=limit.name)
-    for number, (start, end) in enumerate((a, b) for a in events for b in events if a is not b):
-        interval = _interval(None, limit.tolerance, context, limit.name)
-        name = f"{limit.name}_{number}"
-        group.add(
-            "requirements",
-            ProjectObject("requirement.EventTimingRequirement", name=name, start=start, end=end, interval=interval),
-        )
-    return group
+def _chain_synchronization(limit: perf.ChainSynchronization, context: Exporting) -> ProjectObject:
+    """The time from the first of the last events to the last of them."""
+    graph = build_synchronized(limit, context)
+    if not limit.every_occurrence:
+        context.changed(limit, "chains that have to end together once", "without a limit on how often one of them ends")
+    ends = [node["first"] for node in graph["terminalNodes"]]
+    return ProjectObject(
+        CHAIN_REQUIREMENT,
+        name=limit.name,
+        eventChain=graph,
+        start=ends,
+        orSemanticsStart=True,
+        end=ends,
+        interval=_interval(None, limit.tolerance, context, limit.name),
+    )
 
 
 def _data_age(limit: perf.DataAgeConstraint, context: Exporting) -> ProjectObject:
@@ -169,7 +173,7 @@ _BUILD: dict[type[Any], Callable[[Any, Exporting], ProjectObject]] = {
     perf.LatencyConstraint: _latency,
     perf.DelayConstraint: _delay,
     perf.RepetitionConstraint: _repetition,
-    perf.EventSynchronization: _synchronization,
+    perf.ChainSynchronization: _chain_synchronization,
     perf.DataAgeConstraint: _data_age,
     perf.Requirement: _requirement,
 }

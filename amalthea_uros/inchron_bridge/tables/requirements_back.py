@@ -9,6 +9,7 @@ from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time_of
 from amalthea_uros.inchron_bridge.tables.chains_back import EventsReader
+from amalthea_uros.inchron_bridge.tables.graphs_back import joined_steps
 from amalthea_uros.inchron_bridge.tables.requirements import LIMIT, OF_PROCESS
 from amalthea_uros.perf import constraints as perf
 from amalthea_uros.perf.constraints import DataGroup
@@ -56,13 +57,14 @@ def _understood(item: ProjectObject, context: Importing, events: EventsReader) -
             lower, upper = _interval(item)
             return [
                 perf.LatencyConstraint(
-                    name=context.name("Constraint", item),
-                    chain=_chain(item, events),
+                    name=context.name("Constraint", item, f"{item.name}_{number + 1}" if number else None),
+                    chain=chain,
                     kind=_kind(item),
                     minimum=lower or None,
                     maximum=upper,
                     origin=origin,
                 )
+                for number, chain in enumerate(_chains(item, events))
             ]
         case "requirement.PeriodicEventRequirement":
             lower, upper = _interval(item)
@@ -100,14 +102,25 @@ def _interval(item: ProjectObject) -> tuple[int | None, int | None]:
     return lower, None if upper >= NO_LIMIT else upper
 
 
-def _chain(item: ProjectObject, events: EventsReader) -> str:
-    graph = item["eventChain"]
+def _chains(item: ProjectObject, events: EventsReader) -> list[str]:
+    """The chains that a requirement is about: those of its graph, or a part of each; the graph may be one that is not understood."""
+    graph, start, end = item["eventChain"], item["start"], item["end"]
     if graph not in events.chains:
         raise UnknownError("its event chain is not understood")
-    ends = [node["first"] for node in graph["terminalNodes"]]
-    if item["start"] != [graph["initialNode"]["first"]] or item["end"] != ends or item["instanceOffset"]:
-        raise UnknownError("it is about a part of its event chain")
-    return events.chains[graph]
+    if item["instanceOffset"] or (item["orSemanticsStart"] and len(start) > 1) or (item["orSemanticsEnd"] and len(end) > 1):
+        raise UnknownError("it compares several instances of its event chain, or is about one of several steps")
+    chains = events.chains[graph]
+    if graph not in events.routes:
+        return list(chains)
+    result = []
+    for number, route in enumerate(events.routes[graph]):
+        if start == [route[0]] and set(end) == set(joined_steps(route)):
+            result.append(chains[number])
+        elif len(start) == 1 and len(end) == 1:
+            result.append(events.part(graph, number, start[0], end[0]))
+        else:
+            raise UnknownError("it is about a part of its event chain")
+    return result
 
 
 def _kind(item: ProjectObject) -> perf.LatencyKind:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
@@ -11,6 +12,7 @@ from amalthea_uros.inchron_bridge.tables.activities_back import extract_graph
 from amalthea_uros.inchron_bridge.tables.os_back import processes_of
 from amalthea_uros.inchron_bridge.tables.software import ISR, LABEL, RUNNABLE, SEMAPHORE, TASK
 from amalthea_uros.perf import software as perf
+from amalthea_uros.perf.activities import Incomplete
 from amalthea_uros.perf.mapping import Placement
 from amalthea_uros.perf.os import Semaphore
 
@@ -44,7 +46,7 @@ def extract_software(context: Importing, model: ProjectObject, stimuli: dict[Pro
     tasks: list[perf.Task] = []
     isrs: list[perf.Isr] = []
     for process in processes_of(model):
-        activities = extract_graph(process["callGraph"], context)
+        activities = (*extract_graph(process["callGraph"], context), *_not_understood(process, context))
         known: dict[str, Any] = {
             "name": context.name_of("Process", process),
             "stimuli": _in_order(stimuli.get(process, []), context.noted(process).get("stimuli")),
@@ -57,7 +59,6 @@ def extract_software(context: Importing, model: ProjectObject, stimuli: dict[Pro
             preemption = perf.Preemption.PREEMPTIVE if process["preemptable"] else perf.Preemption.NON_PREEMPTIVE
             kept = context.fields(process, perf.Task, ("preemption",)) if not process["preemptable"] else {}
             tasks.append(TASK.extract(process, context, **{**known, "preemption": preemption, **kept}))
-        _report(process, context)
     modes, labels = _modes(context, model, [item for item in objects if item.kind in ("ModeGroup", "Counter")])
     return perf.Software(
         tasks=tuple(tasks),
@@ -81,12 +82,12 @@ def _in_order(names: list[str], order: Any) -> tuple[str, ...]:
     return tuple(sorted(dict.fromkeys(names), key=lambda name: places.get(name, len(places))))
 
 
-def _report(process: ProjectObject, context: Importing) -> None:
-    for feature in ("maxThreads", "threadPool", "triggeringPort", "idleTask"):
+def _not_understood(process: ProjectObject, context: Importing) -> Iterator[Incomplete]:
+    """Activities of unknown demand for the features by which a process may be executed more than its call graph says."""
+    for feature in ("server", "maxThreads", "threadPool", "triggeringPort", "idleTask"):
         if process[feature]:
             context.leave_out(process, f"Process.{feature}")
-    if process["server"]:
-        context.leave_out(process, "Process.server")
+            yield Incomplete(reason=f"Process.{feature} of the project is not understood", locate=context.located(process))
 
 
 def _runnable(item: ProjectObject, context: Importing) -> perf.Runnable:

@@ -173,7 +173,7 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
 def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
     """A substitute for a stimulus that a project cannot have: its highest rate, or nothing if that is unknown."""
     span = context.iterations.get(stimulus.name)
-    rate = _highest_rate(stimulus)
+    rate = highest_rate(stimulus)
     if span is not None:
         shortest, longest = span
         variation = _variation("Uniform", context, "", max=longest - shortest)
@@ -192,7 +192,7 @@ def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
     return made
 
 
-def _highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
+def highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
     """The least period that lasts, and the least distance; None if they are unknown."""
     match stimulus:
         case perf.ArrivalCurve(points=points):

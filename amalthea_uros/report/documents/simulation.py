@@ -146,6 +146,7 @@ def _sections(simulation: Simulation, metrics: Iterable[Section] = (), changed: 
     yield section("Observed response times", _processes(simulation))
     yield from metrics
     yield from map(_executor, simulation.executors)
+    yield from (_executor(executor, is_of_host=True) for executor in simulation.host)
     yield section("Messages on wires that lose some", _losses(simulation))
     yield section(CHAINS_HEADING, _chains(simulation))
     yield section("Runnables with requirements", _runnables(simulation))
@@ -196,7 +197,7 @@ def _microseconds(value: Fraction, is_max: bool = False) -> str:
     return f"{'-' if nanoseconds < 0 else ''}{whole}.{digits:03}"
 
 
-def _executor(executor: ExecutorObservation) -> Section:
+def _executor(executor: ExecutorObservation, is_of_host: bool = False) -> Section:
     rows = [
         (
             handle.name,
@@ -211,10 +212,13 @@ def _executor(executor: ExecutorObservation) -> Section:
     failed = [f"{counted(executor.timeouts, 'publication')} not acknowledged in time"] if executor.timeouts else []
     if executor.refusals:
         failed.append(f"{counted(executor.refusals, 'publication')} not sent, because all buffers are in use")
+    where, jobs = (" of the host", "call") if is_of_host else ("", "iteration")
     return section(
-        f"Executor {executor.name} (from the arrival of a message, or when a timer is due, to the end of the callback)",
-        Sentences([f"{counted(executor.iterations, 'iteration')}", *failed]),
-        table("", ("handle", "kind", ">calls", ">min", ">mean", ">max", ">late by", ">lost"), rows),
+        f"Executor {executor.name}{where} (from the arrival of a message, or when a timer is due, to the end of the callback)",
+        Sentences([f"{counted(executor.iterations, jobs)}", *failed]),
+        table(
+            "", ("callback" if is_of_host else "handle", "kind", ">calls", ">min", ">mean", ">max", ">late by", ">lost"), rows
+        ),
     )
 
 

@@ -68,6 +68,7 @@ declare(
     ("processors", "simulation.cores"),
     ("processes", "simulation.processes"),
     ("executors", "simulation.executors"),
+    ("host", "simulation.host"),
     ("losses", "simulation.losses"),
     ("chains", "simulation.chains"),
     ("left_out", _left_out),

@@ -24,7 +24,8 @@ def closing_line(summary: SystemSummary) -> str:
     unknown = _unknown(summary)
     match summary.schedulable:
         case Schedulable.YES:
-            return f"Schedulable: yes{_tightest(summary)}"
+            condition = f", {summary.condition}" if summary.condition else ""
+            return f"Schedulable: yes{condition}{_tightest(summary)}"
         case Schedulable.NO:
             return "Schedulable: " + "; ".join(filter(None, (f"no: {_failures(summary)}", unknown)))
     return f"Schedulable: {unknown}"

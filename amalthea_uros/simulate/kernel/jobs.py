@@ -6,6 +6,7 @@ from amalthea_uros.simulate.kernel.activation import end_job, fire
 from amalthea_uros.simulate.kernel.agent import part_arrives
 from amalthea_uros.simulate.kernel.conditions import counts, holds, set_mode, step_mode
 from amalthea_uros.simulate.kernel.cores import change_level, requeue, run, stays
+from amalthea_uros.simulate.kernel.host_threads import call_next, have_called, host_publish
 from amalthea_uros.simulate.kernel.iterations import (
     begin_iteration,
     begin_wait,
@@ -256,6 +257,15 @@ def _communicate(m: Memory, core: int, process: int, at: int) -> int:
     elif operation == HAVE_READ:
         if m[process + ITS_MESSAGE]:
             put_in_inbox(m, m[process + ITS_MESSAGE])
+    elif operation == CALL_NEXT:
+        code = call_next(m, core, process, first)
+        if code:
+            return code
+        following = m[second + m[m[first + CALLED_HANDLE] + HANDLE_INDEX]]
+    elif operation == HOST_PUBLISH:
+        code = host_publish(m, first)
+    elif operation == HAVE_CALLED:
+        have_called(m, first)
     elif operation > POST:
         return _pass_wire(m, process, at)
     elif operation == PART_ARRIVES:

@@ -77,9 +77,9 @@ EXECUTIONS, RUNNABLE_ENTITY, RUNNABLE_SIZE = range(3)
 ARRIVED, TAKEN_MESSAGES, LOST_MESSAGES, HAS_TAKEN, MESSAGE_LIMIT, MESSAGE_CAPTURE, MESSAGE_SIZE = range(7)
 
 # What occurs at a planned time: the next iteration of an executor, the end of a wait, what a delay line gives away, or the agent looks
-# whether it misses acknowledgements of a flow.
+# whether it misses acknowledgements of a flow, or timers of an executor of the host expire into its queue.
 ALARM_AT, ALARM_KIND, ALARM_OF, ALARM_SIZE = range(4)
-NEXT_ITERATION, END_OF_WAIT, DELAY_LINE, AGENT_ASKS = range(4)
+NEXT_ITERATION, END_OF_WAIT, DELAY_LINE, AGENT_ASKS, HOST_TIMERS = range(5)
 
 # A message, from its sender to where it waits. What is sent of a reliable message is a copy of it, with its parts (bits) that have not
 # been lost; others are one part. An acknowledgement or a heartbeat is about a flow.
@@ -92,7 +92,7 @@ UP_TO, MISSING, ANNOUNCED_TO, CARRIED = range(10, 14)
 
 # A delay line: messages in their order, each with the time at which it comes out. As what it sends the messages that begin there.
 FIRST_MESSAGE, LAST_MESSAGE, DELAY, ITS_ALARM, LEADS_TO, CREATES, LINE_SIZE = range(7)
-TO_RECEIVER, TO_WIRE, TO_AGENT_ITSELF = range(3)
+TO_RECEIVER, TO_WIRE, TO_AGENT_ITSELF, TO_HOST_QUEUE = range(4)
 
 # A flow: the reliable messages of a session in one direction. Those that are not acknowledged, and those that the agent holds back.
 SENT_FIRST, SENT_LAST, HELD_FIRST, HELD_LAST = range(4)
@@ -143,11 +143,24 @@ HANDLES, HANDLES_END, TRIGGER_SETS, TRIGGER_SETS_END, IS_TRIGGERED = range(21, 2
 # Its loop: a stream of sleeps, the least distance of their ends, the last end, a period, the time up to which it has planned, to what
 # that sleep is cut, and what begins an iteration; whether that is one of its own, or of the next executor of its thread.
 SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM = range(26, 34)
-KEEPS_TURN, EXECUTOR_SIZE = range(34, 36)
+KEEPS_TURN = 34
+# If it is a thread of an executor of the host: that one, which handle it calls, and when that was released.
+THREAD_OF, CALLED_HANDLE, CALLED_SINCE, EXECUTOR_SIZE = range(35, 39)
+
+# An executor of the host: how it works, its handles in the order of the ready set, its threads (records of executors), a queue of
+# events, what lets timers expire into it, and whether timers of busy groups stay in the ready set.
+WORKS_BY, READY_HANDLES, READY_HANDLES_END, ITS_THREADS, ITS_THREADS_END = range(5)
+EVENT_FIRST, EVENT_LAST, EXPIRES_WITH, KEEPS_TIMERS, HOST_EXECUTOR_SIZE = range(5, 10)
+READY_SET, FIRST_READY, EVENT_QUEUE = range(3)
+
+# A publication of the host: its line, and values that the message carries: (place, index).
+PUBLISHES_ON, PUBLISHED_STAMPS, PUBLISHED_STAMPS_END, HOST_PUBLICATION_SIZE = range(4)
 
 # A handle: a timer is due at a time and every period; of the others, messages are kept, or a flag was set at a time.
 HANDLE_KIND, NEXT_CALL, TIMER_PERIOD, KEPT_FIRST, KEPT_LAST, KEPT_NUMBER, DEPTH, OVERWRITES = range(8)
-IS_ALWAYS_CALLED, IS_READY, RELEASED, LOST_CALLS, CALLS, HANDLE_STAMPS, HANDLE_STAMPS_END, HANDLE_SIZE = range(8, 16)
+IS_ALWAYS_CALLED, IS_READY, RELEASED, LOST_CALLS, CALLS, HANDLE_STAMPS, HANDLE_STAMPS_END = range(8, 15)
+# On the host: its executor, its place among the callbacks, and a word that is 1 while its group executes (0: no group matters).
+HANDLE_OF, HANDLE_INDEX, ITS_GROUP, HANDLE_SIZE = range(15, 19)
 TIMER, RECEIVER, FLAG = range(3)
 
 # A condition: alternatives, each of comparisons.
@@ -282,6 +295,12 @@ KEEP_VALUES = 61  # (a message) keeps the values of chains, for when it is sent 
 RESTORE_VALUES = (
     62  # if (a message) has been sent before, the values are those that it has kept, and the job goes to (an operation)
 )
+# Of threads of the host.
+CALL_NEXT = (
+    63  # (a thread) takes what it calls next, or waits, and goes to the operation of the callback in a table at (a place)
+)
+HOST_PUBLISH = 64  # publishes on the host with (a publication)
+HAVE_CALLED = 65  # (a thread) has called: its group is free
 ENTER = 70  # (a stage) reads at the start of the job, into its snapshot; if (1), also into its value
 TAKE = 71  # (a stage) takes what is there now, or, if (1), what was there at the start
 REACH = 72  # a position of (a stage) is reached: (a bit)

@@ -68,6 +68,21 @@ def _put_back(m: Memory, message: int) -> None:
     m[FREE_MESSAGES] = message
 
 
+def keep(m: Memory, inbox: int, handle: int, message: int) -> None:
+    """Keep a message for a callback; beyond its depth the oldest one or itself is lost, and itself if there is no slot."""
+    if 0 < m[handle + DEPTH] <= m[handle + KEPT_NUMBER] and m[handle + OVERWRITES]:
+        m[handle + LOST_CALLS] += 1
+        free_message(m, pop(m, handle + KEPT_FIRST))
+    elif m[handle + KEPT_NUMBER] >= m[handle + DEPTH] or m[inbox + KEPT] >= m[inbox + SLOTS]:
+        m[handle + LOST_CALLS] += 1
+        free_message(m, message)
+        return
+    else:
+        m[handle + KEPT_NUMBER] += 1
+        m[inbox + KEPT] += 1
+    append(m, handle + KEPT_FIRST, message)
+
+
 def append(m: Memory, first: int, message: int) -> None:
     """Put a message at the end of a list; the places of its first and its last message follow each other."""
     m[message + NEXT_MESSAGE] = 0

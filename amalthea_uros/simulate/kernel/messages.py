@@ -18,10 +18,11 @@ from amalthea_uros.simulate.kernel.agent import (
     send_first,
 )
 from amalthea_uros.simulate.kernel.flows import fill_acknowledgement, has_room
+from amalthea_uros.simulate.kernel.host_queues import deliver, expire
 from amalthea_uros.simulate.kernel.layout import *
 from amalthea_uros.simulate.kernel.losses import is_lost, lacks_loss_value
 from amalthea_uros.simulate.kernel.message_records import append, free_message, new_message
-from amalthea_uros.simulate.kernel.waiting import release, wait
+from amalthea_uros.simulate.kernel.waiting import release, wait, wake
 from amalthea_uros.simulate.kernel.wires import delay, enter_wire, lacks_delay
 
 
@@ -32,6 +33,8 @@ def ring(m: Memory, alarm: int) -> int:
         return _come_out(m, owner)
     if m[alarm + ALARM_KIND] == AGENT_ASKS:
         return ask(m, alarm, owner)
+    if m[alarm + ALARM_KIND] == HOST_TIMERS:
+        return expire(m, alarm, owner)
     if m[alarm + ALARM_KIND] == NEXT_ITERATION:
         code = fire(m, m[owner + LOOP_STIMULUS], 0)
         if code:
@@ -42,15 +45,6 @@ def ring(m: Memory, alarm: int) -> int:
     return CONTINUE
 
 
-def wake(m: Memory, process: int) -> None:
-    """A process that waits for messages continues."""
-    executor = m[process + READS_WITH]
-    if executor:
-        m[process + READS_WITH] = 0
-        m[m[executor + WAIT_ALARM] + ALARM_AT] = NEVER
-        release(m, process)
-
-
 def _come_out(m: Memory, line: int) -> int:
     """The first message of a line comes out."""
     message = m[line + FIRST_MESSAGE]
@@ -59,6 +53,8 @@ def _come_out(m: Memory, line: int) -> int:
         code = send(m, message)
     elif leads_to == TO_AGENT_ITSELF:
         code = read_acknowledgement(m, message)
+    elif leads_to == TO_HOST_QUEUE:
+        code = deliver(m, message)
     else:
         code = _receive(m, message)
     if code == 0:

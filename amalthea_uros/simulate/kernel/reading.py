@@ -17,7 +17,7 @@ from amalthea_uros.simulate.kernel.flows import (
     with_part,
 )
 from amalthea_uros.simulate.kernel.layout import *
-from amalthea_uros.simulate.kernel.message_records import append, copy_of, free_message, new_message, pop
+from amalthea_uros.simulate.kernel.message_records import copy_of, free_message, keep, new_message, pop
 from amalthea_uros.simulate.kernel.messages import acknowledge, write
 from amalthea_uros.simulate.kernel.waiting import wait
 
@@ -131,7 +131,7 @@ def _read_message(m: Memory, executor: int, message: int) -> int:
     m[executor + REPLY_ABOUT] = flow
     if handle and not m[message + ORIGINAL]:
         m[executor + DATA_READ] += 1
-        _keep(m, m[transmission + READ_FROM], handle, message)
+        keep(m, m[transmission + READ_FROM], handle, message)
         return CONTINUE
     if m[message + ANNOUNCED_TO]:
         announce(m, flow, m[message + ANNOUNCED_TO])
@@ -158,24 +158,9 @@ def _hand_over(m: Memory, executor: int, flow: int, arrived: int) -> int:
             copy = copy_of(m, message)
             m[copy + DUE] = arrived
             transmission = m[message + SENT_AS]
-            _keep(m, m[transmission + READ_FROM], m[transmission + FOR_HANDLE], copy)
+            keep(m, m[transmission + READ_FROM], m[transmission + FOR_HANDLE], copy)
         message = m[message + NEXT_MESSAGE]
     return CONTINUE
-
-
-def _keep(m: Memory, inbox: int, handle: int, message: int) -> None:
-    """Keep a message for a callback; beyond its depth the oldest one or itself is lost, and itself if there is no slot."""
-    if 0 < m[handle + DEPTH] <= m[handle + KEPT_NUMBER] and m[handle + OVERWRITES]:
-        m[handle + LOST_CALLS] += 1
-        free_message(m, pop(m, handle + KEPT_FIRST))
-    elif m[handle + KEPT_NUMBER] >= m[handle + DEPTH] or m[inbox + KEPT] >= m[inbox + SLOTS]:
-        m[handle + LOST_CALLS] += 1
-        free_message(m, message)
-        return
-    else:
-        m[handle + KEPT_NUMBER] += 1
-        m[inbox + KEPT] += 1
-    append(m, handle + KEPT_FIRST, message)
 
 
 def has_to_write(m: Memory, executor: int) -> bool:

@@ -60,6 +60,15 @@ def release(m: Memory, process: int) -> None:
     change_level(m, process)
 
 
+def wake(m: Memory, process: int) -> None:
+    """A process that waits for messages continues."""
+    executor = m[process + READS_WITH]
+    if executor:
+        m[process + READS_WITH] = 0
+        m[m[executor + WAIT_ALARM] + ALARM_AT] = NEVER
+        release(m, process)
+
+
 # Semaphores.
 
 

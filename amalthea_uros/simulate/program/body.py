@@ -1,4 +1,4 @@
-"""The programs of processes and of decisions of schedulers, activity by activity."""
+"""The programs of processes, activity by activity."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.activities import compile_activity
 from amalthea_uros.simulate.program.executors import IterationCompiler, add_activities
+from amalthea_uros.simulate.program.host_programs import add_thread
 from amalthea_uros.simulate.program.image import Code, JumpLabel, Operation, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.watches import EventSource
@@ -26,7 +27,6 @@ from amalthea_uros.timing.basics.settings import MemoryModel
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import DemandFrame
 from amalthea_uros.timing.jobs.counters import flaw_of_activity, reached
-from amalthea_uros.trace.table import EntityKind, EventKind
 
 #: A program with more operations is not built.
 MAX_OPERATIONS = 1_000_000
@@ -207,7 +207,7 @@ def _too_many_activities() -> UnknownError:
     return UnknownError(f"it executes more than {MAX_OPERATIONS:,} activities")
 
 
-# Programs of processes and of decisions of schedulers.
+# Programs of processes.
 
 
 def process_code(
@@ -237,7 +237,10 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
     for kind, frame in copies:
         if kind is AccessKind.READ:
             body.frame(frame)
-    add_activities(body, process)
+    if (executor := body.resources.executors.messages.host.executor_of(process.name)) is not None:
+        add_thread(body, process, executor)
+    else:
+        add_activities(body, process)
     body.code.mark(body.end)
     for kind, frame in copies:
         if kind is AccessKind.WRITE:
@@ -248,15 +251,5 @@ def _process_code(body: Body, process: Process, scheduler: Scheduler | None) -> 
         for activity in scheduler.overhead:
             compile_activity(body, activity)
     add_end(body, process)
-    body.code.add(layout.END)
-    return body.code
-
-
-def decision_code(resources: Resources, scheduler: Scheduler, core: str) -> Code:
-    """The program of a decision of a scheduler; raises as `process_code`."""
-    body = Body(resources, None, core, ProgramHooks(), in_group=False)
-    body.activities(scheduler.overhead)
-    if resources.is_noted:
-        body.code.add(layout.NOTE, int(EventKind.SCHEDULE), resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
     body.code.add(layout.END)
     return body.code

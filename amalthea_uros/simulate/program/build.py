@@ -14,6 +14,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.chains import ChainCompiler, FollowedRoute
 from amalthea_uros.simulate.program.executors import ExecutorRecords
 from amalthea_uros.simulate.program.flows import FlowRecords
+from amalthea_uros.simulate.program.host_system import depending
 from amalthea_uros.simulate.program.image import Image
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.simulate.program.modes import ModeRecords
@@ -51,6 +52,7 @@ class _ProgramBuilder:
     def __post_init__(self) -> None:
         self.dispatching = Dispatching(self.context)
         self.left_out = self.dispatching.left_out | self.left_out
+        self.left_out |= depending(self.context.system, self.left_out)
         processes = self.dispatching.processes
         self.dispatching.processes = {name: item for name, item in processes.items() if name not in self.left_out}
         watches = Watches(watched(self.context.system, self.options.watched_labels(self.context.system)))
@@ -110,7 +112,7 @@ class _ProgramBuilder:
             streams=resources.streams,
             stream_records=resources.stream_records,
             # What arrives at the time of an activation is there before it.
-            arrivals=[*messages.arrivals, *network.arrivals, *arrivals],
+            arrivals=[*messages.arrivals, *network.arrivals, *network.host.arrivals, *arrivals],
             messages=resources.queues,
             processes=tuple(processes),
             records=processes,
@@ -123,6 +125,7 @@ class _ProgramBuilder:
             runnables=runnables,
             handles=tuple(executors.measured),
             handle_records=dict(network.handles),
+            host_handles=dict(network.host.handles),
             executors=executors.publications_of(),
             lossy=flows.on_lossy_wires(),
             left_out=self.left_out,
@@ -164,6 +167,7 @@ class KernelProgram:
     runnables : that are measured, in the order of their numbers in rows, which follow those of the processes
     handles : executors and handles of which the calls are measured, in the order of their numbers, which follow those of runnables
     handle_records : by executor and handle
+    host_handles : the records of the callbacks of the host; none if it is not simulated
     executors : those that are simulated, each with the records of its publications
     lossy : the records of messages on wires of which it is stated how many they lose
     left_out : why a process is not simulated
@@ -187,6 +191,7 @@ class KernelProgram:
     runnables: tuple[str, ...]
     handles: tuple[tuple[str, str], ...]
     handle_records: dict[tuple[str, str], int]
+    host_handles: dict[str, int]
     executors: dict[str, list[int]]
     lossy: dict[str, int]
     left_out: dict[str, str]

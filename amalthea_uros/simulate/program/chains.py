@@ -9,6 +9,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.perf.activities import Communication, Trigger
 from amalthea_uros.perf.events import EventChain
+from amalthea_uros.perf.host import HostCallback
 from amalthea_uros.perf.network import Direction, Purpose, Transmission
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
@@ -129,17 +130,30 @@ class ChainCompiler:
         messages = self.resources.executors.messages
         transmissions = messages.system.transmissions
         sent = transmissions.get(before.process.name)
+        publisher, subscription = self._on_host(before), self._on_host(stage)
+        if publisher is not None or subscription is not None:
+            source, target = publisher or sent, subscription or transmissions.get(stage.process.name)
+            assert source is not None
+            assert target is not None
+            received = self.resources.image.record(layout.STAGE_SIZE, {layout.LINK: -1})
+            messages.carry_on_host(source, target, record, received + layout.LINK)
+            return received
         if sent is None or sent.name == stage.process.name:
             return record
-        target: Transmission | tuple[str, str] | None = transmissions.get(stage.process.name)
-        if target is None:
+        taken_by: Transmission | tuple[str, str] | None = transmissions.get(stage.process.name)
+        if taken_by is None:
             ready = taker(sent, messages.system)
             if ready is None:
                 return record
-            target = (ready[0].name, ready[1].name)
+            taken_by = (ready[0].name, ready[1].name)
         found = self.resources.image.record(layout.STAGE_SIZE, {layout.LINK: -1})
-        messages.carry(sent, record + layout.LINK, target, found + layout.LINK)
+        messages.carry(sent, record + layout.LINK, taken_by, found + layout.LINK)
         return found
+
+    def _on_host(self, stage: Stage) -> HostCallback | None:
+        """The callback of the host in which a stage is."""
+        host = self.resources.executors.messages.host
+        return host.callback_at(stage.positions[-1]) if stage.positions else None
 
     def _positions(self, stage: Stage) -> list[ActivityPosition]:
         """The positions that a job must reach, each once."""

@@ -83,7 +83,7 @@ class ExecutorRecords:
             layout.MESSAGES_PER_WAIT: waiting.messages_per_wait or 0,
             layout.KEPT_END_WAIT: int(waiting.stored_data_ends_wait),
             layout.FLAGS_END_WAIT: int(waiting.guard_conditions_end_wait),
-            layout.WAIT_ALARM: self.messages.alarm(layout.END_OF_WAIT, record),
+            layout.WAIT_ALARM: self.messages.lines.alarm(layout.END_OF_WAIT, record),
             layout.HANDLES: first,
             layout.HANDLES_END: end,
             layout.TRIGGER_SETS: sets,
@@ -96,7 +96,7 @@ class ExecutorRecords:
             layout.SLEEP_RESOLUTION: time(SLEEP_RESOLUTION),
             layout.LOOP_STIMULUS: resources.stimuli[iterations_name(following.name)],
             layout.KEEPS_TURN: int(following is executor),
-            layout.LOOP_ALARM: self.messages.alarm(layout.NEXT_ITERATION, record, at=begin),
+            layout.LOOP_ALARM: self.messages.lines.alarm(layout.NEXT_ITERATION, record, at=begin),
         }
         image.put(record, fields)
 

@@ -84,7 +84,7 @@ class FlowRecords:
             messages.resources.context.notes.assume(_AGAIN)
             # All of a flow wait in one queue of the agent.
             line = messages.image.words[fields[layout.FLOW] + layout.SENT_AGAIN_ON] or messages.line(
-                transmission, messages.delay(f"again {transmission.name}", transmission.agent), layout.TO_WIRE
+                transmission, messages.lines.delay(f"again {transmission.name}", transmission.agent), layout.TO_WIRE
             )
             messages.image.put(fields[layout.FLOW], {layout.SENT_AGAIN_ON: line})
         messages.image.put(record, fields)
@@ -113,7 +113,7 @@ class FlowRecords:
             fields[layout.ASKS_AFTER] = time(recovery.agent_asks_every if is_received else recovery.asks_after)
         flow = messages.image.record(layout.FLOW_SIZE, fields)
         if is_received and recovery is not None and asks_as is not None:
-            messages.alarm(layout.AGENT_ASKS, flow, at=self._first_look(wire, recovery.agent_asks_every))
+            messages.lines.alarm(layout.AGENT_ASKS, flow, at=self._first_look(wire, recovery.agent_asks_every))
         return flow
 
     def _first_look(self, wire: Wire, interval: int) -> int:

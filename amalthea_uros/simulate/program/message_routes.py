@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise, product
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.callbacks import handle_around, taker
 from amalthea_uros.perf.activities import Call
-from amalthea_uros.perf.events import Event, EventChain, RunnableChange, RunnableEvent
+from amalthea_uros.perf.events import CustomEvent, Event, EventChain, RunnableChange, RunnableEvent
 from amalthea_uros.perf.executors import Handle
-from amalthea_uros.perf.network import Direction, Transmission
+from amalthea_uros.perf.network import Direction, Transmission, plain_topic
+from amalthea_uros.simulate.program.host_system import why_not_simulated
 from amalthea_uros.simulate.program.messages import MessageRecords
 from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.timing.context import TimingContext
@@ -41,8 +42,18 @@ class MessageRoutes:
         UnknownError : nothing takes the effect from an event to the next, or an event has no place of its own.
         """
         events = self.context.system.events_by_name
+        self._check_host(events[name] for path in sequences(unfold(chain, self.context.system)[0]) for name in path)
         paths = sequences(unfold(chain, self.context.system)[0])
         return {tuple(path): [self._route(self._with_takers([events[name] for name in path]))] for path in paths}
+
+    def _check_host(self, events: Iterable[Event]) -> None:
+        """Refuse callbacks of the host that are not simulated, or that several threads call."""
+        system = self.context.system
+        for event in events:
+            callback = system.callback_of_host_event.get(event.name)
+            if isinstance(event, CustomEvent) and callback is not None:
+                reason = why_not_simulated(system) or f"several threads call {callback.name!r}"
+                raise UnknownError(f"it passes callbacks of the host: {reason}")
 
     def _with_takers(self, events: Sequence[Event]) -> list[Event]:
         """The events, and those of callbacks that only take a message for a task of its own."""
@@ -85,11 +96,32 @@ class MessageRoutes:
         """The link from one event to the next; None if nothing takes the effect on."""
         system = self.context.system
         before, after = (system.transmissions.get(each.process.name) for each in (first, then))
+        if any(self.messages.host.callback_at(each.position) for each in (first, then)):
+            return self._on_host(first, then)
         if before is not None and first.process is not then.process:
             if after is not None:
                 return Link(LinkKind.RELAY, (before.topic or "",)) if before in relayed(after, system) else None
             return self._taken(before, then) if before.direction is Direction.TO_CONTROLLER else None
         return next((link for link in self._links(first, then) if link.kind is not LinkKind.MESSAGE), None)
+
+    def _on_host(self, first: EventOccurrence, then: EventOccurrence) -> Link | None:
+        """How messages take the effect to a callback of the host, or from there."""
+        host, transmissions = self.messages.host, self.context.system.transmissions
+        one, other = host.callback_at(first.position), host.callback_at(then.position)
+        if one is not None and one == other:
+            return Link(LinkKind.JOB)
+        if one is None and other is not None:
+            sent = transmissions.get(first.process.name)
+            is_received = sent is not None and sent.direction is Direction.TO_AGENT and plain_topic(sent.topic) == other.topic
+            return Link(LinkKind.QUEUE, (other.topic or "",), read=then.position) if is_received else None
+        if one is None:
+            return None
+        if other is not None:
+            is_sent = other.topic in one.publishes
+            return Link(LinkKind.QUEUE, (other.topic or "",), write=first.position, read=then.position) if is_sent else None
+        received = transmissions.get(then.process.name)
+        topic = "" if received is None else plain_topic(received.topic)
+        return Link(LinkKind.RELAY, (topic,), write=first.position) if topic in one.publishes else None
 
     def _links(self, first: EventOccurrence, then: EventOccurrence) -> Iterator[Link]:
         """The links of the data flow of processes, without those of calls of other handles."""

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.executors.semantics.suspension import parts
 from amalthea_uros.perf.activities import Trigger, walk
-from amalthea_uros.perf.distributions import Boundaries, Uniform
+from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind
+from amalthea_uros.perf.host import HostCallback
 from amalthea_uros.perf.network import Direction, Losses, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimulus
 from amalthea_uros.perf.system import System
@@ -19,16 +19,16 @@ from amalthea_uros.simulate.arrivals import StimulusOccurrences, occurrences
 from amalthea_uros.simulate.arrivals.periodic import NO_LONGER
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.options import SimulationMode
+from amalthea_uros.simulate.program.host_records import HostRecords
+from amalthea_uros.simulate.program.host_system import why_not_simulated
 from amalthea_uros.simulate.program.image import Image, Operation
+from amalthea_uros.simulate.program.message_lines import Lines
 from amalthea_uros.simulate.program.resources import Resources
-from amalthea_uros.simulate.sampling.streams import durations
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.units import Time
 
 #: Assumptions.
-_DELAYS = "times in the agent, in switches and in drivers are uniform between their limits, and keep the order of messages"
-_MEANS = "where only the mean of a time in the agent is known, every message takes it"
 _HOST = "the host is not simulated: its messages come at the interval and with the jitter that the controller states"
 _AT_ONCE = Span(most=0)
 
@@ -45,7 +45,9 @@ class MessageRecords:
     sent : the transmission that a stimulus stands for, if something here sends it
     brought : by stimulus, the line on which each occurrence brings a message, and what occurs
     arrivals : of messages that come over no wire
-    alarms : what occurs at planned times
+    from_host : the stimuli of messages that the simulated host sends
+    lines : what delays messages, and alarms
+    host : the executors of the host
     acknowledging_lines : by the name of the message with which the agent acknowledges
     sent_again : reliable messages on wires of which it is stated how many they lose
     losses : the records of what loses messages, by wire
@@ -58,13 +60,19 @@ class MessageRecords:
     sent: dict[str, Transmission] = field(default_factory=dict)
     brought: dict[str, tuple[int, Stimulus]] = field(default_factory=dict)
     arrivals: list[tuple[int, StimulusOccurrences]] = field(default_factory=list)
-    alarms: list[int] = field(default_factory=list)
+    lines: Lines = field(init=False)
+    host: HostRecords = field(init=False)
+    from_host: set[str] = field(default_factory=set)
     acknowledging_lines: dict[str, int] = field(default_factory=dict)
     sent_again: set[str] = field(default_factory=set)
     losses: dict[tuple[str, Losses], int] = field(default_factory=dict)
     _receivers: dict[str, bool] | None = None
     _carried: int = 0
     _stamps: dict[tuple[int, int], list[int]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.lines = Lines(self.resources)
+        self.host = HostRecords(self.resources, self.lines)
 
     @property
     def system(self) -> System:
@@ -80,6 +88,7 @@ class MessageRecords:
 
     def place(self) -> None:
         """Place the records; they are filled when all have a place."""
+        self.host.place()
         sessions: dict[str | None, int] = {}
         for executor in self.system.executors:
             slots = executor.waiting.slots
@@ -105,8 +114,8 @@ class MessageRecords:
             assume(f"no message is lost on {transmission.wire!r}, or dropped because another thread is sending")
         if relayed(transmission, self.system):
             assume(f"messages of {transmission.topic!r} come only from the publishers that are described")
-        if self.system.host.executors:
-            assume(_HOST)
+        if self.system.host.executors and not self.host.is_simulated:
+            assume(f"{_HOST}: {why}" if (why := why_not_simulated(self.system)) else _HOST)
 
     def _handle(self, executor: Executor, handle: Handle) -> int:
         kind = {HandleKind.TIMER: layout.TIMER, HandleKind.GUARD_CONDITION: layout.FLAG}.get(handle.kind, layout.RECEIVER)
@@ -142,23 +151,27 @@ class MessageRecords:
             wire = next(each for each in system.network.wires if each.name == transmission.wire)
             fields[layout.HOLDS_WRITER] = int(wire.keeps_sender)
             if transmission.purpose is Purpose.ACKNOWLEDGEMENT:
-                arrives = self.delay(f"to agent {transmission.name}", transmission.link)
+                arrives = self.lines.delay(f"to agent {transmission.name}", transmission.link)
                 fields[layout.LINE_IN] = self.line(transmission, arrives, layout.TO_AGENT_ITSELF)
             if transmission.purpose is Purpose.DATA and transmission.agent.simulated.most is not None:
-                fields[layout.TO_HOST] = self.delay(f"to host {transmission.name}", transmission.link, transmission.agent)
+                fields[layout.TO_HOST] = self.lines.delay(f"to host {transmission.name}", transmission.link, transmission.agent)
         self.image.put(record, fields)
         if isinstance(system.stimuli_by_name[stimulus], InterProcess):
             self.sent[stimulus] = transmission
+        elif self.host.is_sent_by_host(transmission):
+            self.from_host.add(stimulus)
         else:
             self._bring(transmission, system.stimuli_by_name[stimulus])
         self._acknowledge(transmission)
         lines = [
             self.line(
-                relay, self.delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent), layout.TO_WIRE
+                relay,
+                self.lines.delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent),
+                layout.TO_WIRE,
             )
             for relay in self._relays(transmission)
         ]
-        first, end = self.image.items(lines)
+        first, end = self.image.items([*lines, *self.host.receiving_lines(transmission)])
         self.image.put(record, {layout.RELAYS: first, layout.RELAYS_END: end})
 
     def _relays(self, transmission: Transmission) -> list[Transmission]:
@@ -172,7 +185,7 @@ class MessageRecords:
         fields = {
             layout.LINE_IN: self.line(
                 transmission,
-                self.delay(f"receive {transmission.name}", transmission.link, transmission.driver),
+                self.lines.delay(f"receive {transmission.name}", transmission.link, transmission.driver),
                 layout.TO_RECEIVER,
             )
         }
@@ -254,7 +267,7 @@ class MessageRecords:
             return
         sent = self.system.transmissions.get(transmission.acknowledges)
         if sent is not None:
-            delay = self.delay(f"acknowledge {transmission.name}", sent.link, transmission.agent)
+            delay = self.lines.delay(f"acknowledge {transmission.name}", sent.link, transmission.agent)
             self.acknowledging_lines[transmission.name] = self.line(transmission, delay, layout.TO_WIRE)
 
     def _bring(self, transmission: Transmission, stimulus: Stimulus) -> None:
@@ -262,9 +275,11 @@ class MessageRecords:
         ready = taker(transmission, self.system)
         if transmission.purpose is Purpose.DATA and transmission.direction is Direction.TO_CONTROLLER and ready is not None:
             stimulus = self._published(stimulus.name, ready[1]) or stimulus
-            line = self.line(transmission, self.delay(f"from host {transmission.name}", transmission.agent), layout.TO_WIRE)
+            line = self.line(
+                transmission, self.lines.delay(f"from host {transmission.name}", transmission.agent), layout.TO_WIRE
+            )
         else:
-            line = self.line(transmission, self.delay("", _AT_ONCE), layout.TO_WIRE)
+            line = self.line(transmission, self.lines.delay("", _AT_ONCE), layout.TO_WIRE)
         self.brought[stimulus.name] = (line, stimulus)
 
     def _published(self, name: str, handle: Handle, others: Sequence[Handle] = ()) -> Stimulus | None:
@@ -291,7 +306,7 @@ class MessageRecords:
         assert stimulus is not None
         fields = {layout.READ_FROM: self.inboxes[executor.name], layout.FOR_HANDLE: self.handles[executor.name, handle.name]}
         transmission = self.image.record(layout.TRANSMISSION_SIZE, fields)
-        line = self._line_of(transmission, self.delay("", _AT_ONCE), layout.TO_RECEIVER)
+        line = self.lines.line_of(transmission, self.lines.delay("", _AT_ONCE), layout.TO_RECEIVER)
         record = self.image.record(layout.STIMULUS_SIZE, {layout.BRINGS: line})
         source = RandomSource(self.resources.options.seed, f"stimulus {stimulus.name}")
         times = occurrences(stimulus, self.system, self.resources.options.mode, source, self.resources.units)
@@ -299,38 +314,9 @@ class MessageRecords:
 
     # Lines.
 
-    def delay(self, place: str, *spans: Span) -> int:
-        """The stream of a delay that consists of several.
-
-        Instead of a maximum that is unknown, the minimum counts; nothing that depends on it is observed: see `obstacle`.
-        """
-        taken = [span.simulated for span in spans]
-        least = sum(span.least for span in taken)
-        most = sum(span.least if span.most is None else span.most for span in taken)
-        if most > least:
-            self.resources.context.notes.assume(_DELAYS)
-        if any(span != stated for span, stated in zip(taken, spans, strict=True)):
-            self.resources.context.notes.assume(_MEANS)
-        source = RandomSource(self.resources.options.seed, f"delay {place}")
-        times = Boundaries(lower=least, upper=most)
-        return self.resources.stream(durations(times, Fraction(self.resources.units), self.resources.options.mode, source))
-
     def line(self, transmission: Transmission, delay: int, leads_to: int) -> int:
         """A line of messages with a stream of delays."""
-        return self._line_of(self.transmissions[transmission.name], delay, leads_to)
-
-    def _line_of(self, transmission: int, delay: int, leads_to: int) -> int:
-        line = self.image.record(
-            layout.LINE_SIZE, {layout.DELAY: delay, layout.LEADS_TO: leads_to, layout.CREATES: transmission}
-        )
-        self.image.put(line, {layout.ITS_ALARM: self.alarm(layout.DELAY_LINE, line)})
-        return line
-
-    def alarm(self, kind: int, owner: int, at: int = layout.NEVER) -> int:
-        """The record of something that occurs at planned times."""
-        fields = {layout.ALARM_AT: at, layout.ALARM_KIND: kind, layout.ALARM_OF: owner}
-        self.alarms.append(self.image.record(layout.ALARM_SIZE, fields))
-        return self.alarms[-1]
+        return self.lines.line_of(self.transmissions[transmission.name], delay, leads_to)
 
     # What messages carry, and what processes do with them.
 
@@ -347,6 +333,20 @@ class MessageRecords:
             self._stamp(self.transmissions[target.name], layout.STAMPS_TO, place, index)
         else:
             self._stamp(self.handles[target], layout.HANDLE_STAMPS, place, index)
+
+    def carry_on_host(
+        self, source: Transmission | HostCallback, target: Transmission | HostCallback, stage: int, place: int
+    ) -> None:
+        """Have a message of the host, or to it, carry the value of a stage of a chain to a place in memory."""
+        index, self._carried = self._carried, self._carried + 1
+        if isinstance(source, Transmission):
+            self._stamp(self.transmissions[source.name], layout.STAMPS_FROM, stage + layout.LINK, index)
+        else:
+            self.host.carry(source, target.name, stage + layout.LINK, index)
+        if isinstance(target, Transmission):
+            self._stamp(self.transmissions[target.name], layout.STAMPS_TO, place, index)
+        else:
+            self._stamp(self.host.handles[target.name], layout.HANDLE_STAMPS, place, index)
 
     def keep(self, name: str, stage: int) -> None:
         """Have a message that can be sent again keep the value of a stage of a chain that it has on the wire."""
@@ -384,5 +384,5 @@ class MessageRecords:
         for (record, field_), pairs in self._stamps.items():
             first, end = self.image.items(pairs)
             self.image.put(record, {field_: first, field_ + 1: end})
-        first, end = self.image.items(self.alarms)
+        first, end = self.image.items(self.lines.alarms)
         return {layout.CARRIED_VALUES: self._carried, layout.ALARMS: first, layout.ALARMS_END: end}

@@ -9,8 +9,9 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.simulate.kernel import layout
-from amalthea_uros.simulate.program.body import decision_code, process_code
+from amalthea_uros.simulate.program.body import process_code
 from amalthea_uros.simulate.program.chains import ChainCompiler
+from amalthea_uros.simulate.program.decision_programs import decision_code
 from amalthea_uros.simulate.program.image import Image, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched, Dispatching

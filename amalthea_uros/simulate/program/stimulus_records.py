@@ -59,6 +59,7 @@ class StimulusRecords:
                 if isinstance(stimulus, EventTriggered) and not self.resources.context.activations.causes(stimulus):
                     raise UnknownError(f"no activity in the model raises an event of the stimulus {name!r}")
                 is_internal = isinstance(stimulus, InterProcess | EventTriggered)
+                is_internal = is_internal or name in self.resources.executors.messages.from_host
                 if name in self.resources.executors.messages.brought:
                     line, stimulus = self.resources.executors.messages.brought[name]
                     self.resources.image.put(record, {layout.BRINGS: line})

@@ -29,7 +29,8 @@ _MARGIN = 4096
 _VALUES, _LEAST_VALUES, _MOST_VALUES = 2**20, 32, 4096
 #: Records of messages to begin with.
 _MESSAGES = 64
-#: Of messages at a time if some can be lost: with each answer about a gap, more are sent again, so that they can multiply without end.
+#: Of messages at a time if some can be lost: with each answer about a gap, more are sent again, so that they can multiply without end;
+#: and of those that wait in an events executor, whose queue grows without end in an overload.
 MOST_MESSAGES = 2**13
 #: Occurrences that are prepared at a time, about.
 _OCCURRENCES = 8192
@@ -138,7 +139,8 @@ class KernelDriver:
                     return
                 self._grow_queues()
             elif code == layout.NO_MESSAGES:
-                if self.program.lossy and self._messages >= MOST_MESSAGES:
+                can_multiply = self.program.lossy or self.program.host_handles
+                if can_multiply and self._messages >= MOST_MESSAGES:
                     self.multiplied = self._messages
                     return
                 self._add_messages()

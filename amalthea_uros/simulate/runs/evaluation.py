@@ -26,6 +26,7 @@ from amalthea_uros.simulate.observations import (
     RunnableObservation,
 )
 from amalthea_uros.simulate.program.build import KernelProgram
+from amalthea_uros.simulate.program.host_system import host_name, thread_names
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.simulate.runs.not_simulated import NotSimulated
@@ -71,9 +72,12 @@ class RunEvaluation:
             mode=self.run.options.mode,
             cores=Results(self._core(name, record) for name, record in program.cores.items()),
             processes=processes,
-            left_out=Results(self._left_out(name, reason) for name, reason in program.left_out.items()),
+            left_out=Results(
+                self._left_out(name, reason) for name, reason in program.left_out.items() if name not in self._threads_of_host
+            ),
             chains=found,
             executors=executors,
+            host=Results(self._host()),
             losses=Results(self._losses()),
             runnables=runnables,
             labels=Results(self.run.observers.labels()),
@@ -106,7 +110,13 @@ class RunEvaluation:
 
     def _processes(self) -> Iterator[ProcessObservation]:
         for name, found in zip(self.program.processes, self.run.jobs, strict=True):
-            yield self._process(name, found)
+            if name not in self._threads_of_host:
+                yield self._process(name, found)
+
+    @property
+    def _threads_of_host(self) -> frozenset[str]:
+        """The tasks that stand for threads of the host, of which the executors of the host are observed instead."""
+        return frozenset(name for executor in self.context.system.host.executors for name in thread_names(executor))
 
     def _deadline(self, name: str) -> Deadline | None:
         deadline = deadline_of(name, self.context)
@@ -193,6 +203,31 @@ class RunEvaluation:
                 refusals=int(sum(memory[record + layout.REFUSALS] for record in publications)),
                 handles=Results(
                     self._handle(executor, handle, found[executor.name, handle.name]) for handle in executor.handles
+                ),
+            )
+
+    def _host(self) -> Iterator[ExecutorObservation]:
+        """The executors of the host, if it is simulated."""
+        memory, calls_of = self.run.driver.memory, dict(zip(self.program.handles, self.run.handles, strict=True))
+        for executor in self.context.system.host.executors if self.program.host_handles else ():
+            threads = map(self.program.processes.index, thread_names(executor))
+            yield ExecutorObservation(
+                name=executor.name,
+                iterations=sum(self.run.jobs[number].count for number in threads),
+                timeouts=0,
+                handles=Results(
+                    HandleObservation(
+                        name=callback.name,
+                        kind=callback.kind,
+                        runnable=callback.name,
+                        calls=calls.count,
+                        metrics=calls.observations(None),
+                        preemptions=calls.preemptions,
+                        migrations=calls.migrations,
+                        lost=int(memory[self.program.host_handles[callback.name] + layout.LOST_CALLS]),
+                    )
+                    for callback in executor.callbacks
+                    for calls in [calls_of[host_name(executor), callback.name]]
                 ),
             )
 

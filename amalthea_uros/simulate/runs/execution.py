@@ -20,6 +20,7 @@ from amalthea_uros.simulate.metrics.kept_values import KeptValues
 from amalthea_uros.simulate.metrics.observers import Observers
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import KernelProgram
+from amalthea_uros.simulate.program.host_system import host_name
 from amalthea_uros.simulate.runs.driver import KernelDriver
 from amalthea_uros.timing.blocking.critical_sections import spinlocks_of
 from amalthea_uros.timing.context import TimingContext
@@ -77,9 +78,13 @@ class SimulationRun:
     def _kept_calls(self) -> Iterator[Callable[[Numbers], None] | None]:
         """The functions that keep the calls of each handle."""
         executors = {executor.name: executor for executor in self.context.system.executors}
+        of_host = {host_name(executor) for executor in self.context.system.host.executors}
         if self.kept is not None:
             self.kept.units = self.program.units
         for executor, name in self.program.handles:
+            if executor in of_host:
+                yield None if self.kept is None else partial(self.kept.add_calls, name, name)
+                continue
             (runnable,) = (handle.runnable for handle in executors[executor].handles if handle.name == name)
             yield None if self.kept is None else partial(self.kept.add_calls, runnable, name)
 

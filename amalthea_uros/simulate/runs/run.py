@@ -11,6 +11,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.metrics.kept_values import KeptValues
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.program.build import build_program
+from amalthea_uros.simulate.program.host_system import with_host
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.evaluation import RunEvaluation
 from amalthea_uros.simulate.runs.execution import SimulationRun
@@ -35,7 +36,8 @@ def simulate_system(
     sinks : for the events of `options.traced`
     kept : keeps single values
     """
-    context = TimingContext.of_scheduling(with_first_arrivals(with_steps(system), options.settings.phases), options.settings)
+    steps = with_host(with_steps(system))
+    context = TimingContext.of_scheduling(with_first_arrivals(steps, options.settings.phases), options.settings)
     program = build_program(context, options)
     run = SimulationRun(context, options, program, kept)
     with ExitStack() as stack:

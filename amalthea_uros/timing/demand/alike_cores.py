@@ -11,7 +11,7 @@ from functools import cached_property
 
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.perf.activities import Activity, Execute, Group, WaitEvent, Waiting
+from amalthea_uros.perf.activities import Execute, WaitEvent, Waiting
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
@@ -95,14 +95,12 @@ class DemandOnAnyCores:
     def _counting(self) -> DemandModel:
         """The same for demands without waits, in ticks where no clock is stated, and on hypothetical cores where there are none."""
         system = self.stated.system
-        if WaitEvent in system.activity_classes:
-            system = system.with_activities(_without_waits)
         if not system.cores:
             system = _with_hypothetical_cores(system)
         unknown = {core: _TERAHERTZ for core in system.cores if self._frequency(core) is None}
         settings = self.stated.settings
         frequencies = {**settings.frequencies, **unknown}
-        return DemandModel(system, self.stated.notes, replace(settings, frequencies=frequencies))
+        return DemandModel(system, self.stated.notes, replace(settings, frequencies=frequencies), ignores_waits=True)
 
     def _frequency(self, core: str) -> Frequency | None:
         return self.stated.frequency(core) if core in self.stated.system.cores else None
@@ -130,10 +128,6 @@ class DemandOnAnyCores:
         except UnknownError as error:
             return DemandOnCores(shown, None, time_base, str(error))
         return DemandOnCores(shown, demands[0], time_base)
-
-
-def _without_waits(activity: Activity) -> Activity:
-    return Group(activities=(), locate=activity.locate) if isinstance(activity, WaitEvent) else activity
 
 
 def _named_types(process: Process, system: System) -> frozenset[str]:

@@ -72,11 +72,17 @@ MAX_TIME_BASE = 1000
 
 @dataclass(slots=True)
 class DemandModel:
-    """The demand of the processes of a system."""
+    """The demand of the processes of a system.
+
+    Attributes
+    ----------
+    ignores_waits : whether demands are those without the time for which jobs wait for events; otherwise they are unknown
+    """
 
     system: System
     notes: AnalysisNotes
     settings: Settings = field(default_factory=Settings)
+    ignores_waits: bool = False
     memory: MemoryAccess = field(init=False)
     overheads: Overheads = field(init=False)
     sites: CallSites = field(init=False)
@@ -233,7 +239,7 @@ class DemandModel:
                 raise UnknownError(reason)
             case SenderReceiverAccess(label=label, kind=kind) if self.settings.memory is not MemoryModel.NONE:
                 return [self.access(core, label, kind, None)]
-            case WaitEvent():
+            case WaitEvent() if not self.ignores_waits:
                 raise UnknownError("it waits for events without a timeout, so there is no upper bound")
             case Incomplete(reason=reason, is_access=is_access) if (
                 not is_access or self.settings.memory is not MemoryModel.NONE

@@ -29,6 +29,11 @@ def quantile_assumption(probability: Fraction) -> str:
     )
 
 
+def quantile_condition(probability: Fraction) -> str:
+    """The same, short, for the verdict on a whole system."""
+    return f"if no execution time is beyond its quantile of {float(probability):g} (--quantile)"
+
+
 def with_quantiles(system: System, probability: Fraction) -> System:
     """The system with bounds for the execution times that have none."""
     return system.with_activities(lambda activity: _bounded_activity(activity, probability))

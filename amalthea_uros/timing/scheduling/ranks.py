@@ -297,6 +297,8 @@ class SchedulingOrder:
         cores = [core for core in served if core in wanted] if wanted else list(served)
         if len(cores) != 1:
             reason = _no_single_core(scheduler, served, wanted, cores)
+            if cores:
+                raise UnknownError(reason)
             self.notes.warning("ANA002", f"tasks of the scheduler {scheduler.name!r} are not analysed: {reason}", scheduler)
             raise UnknownError(reason)
         others = [name for name in self._roots().get(cores[0], ()) if name != root.name]

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import ClassVar, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.trace.ctf.streams import CtfEvent
 from amalthea_uros.trace.files import TraceProblems
 from amalthea_uros.trace.reading import EventRows
@@ -58,21 +59,75 @@ class Interpreter:
 
 # The scheduler of Linux, as the kernel tracer of LTTng records it.
 
+
+@dataclass(slots=True)
+class LinuxThread:
+    """How a thread was seen to be scheduled.
+
+    Attributes
+    ----------
+    priorities : those of the kernel less 100, as LTTng records them (lttng-modules, events/sched.h): from 0 on, without a real-time
+        priority; -1 to -100, with the real-time priorities 0 to 99; -101, with a deadline
+    cores : on which it was switched in
+    ran : how long it has run, up to `since`
+    since : when it was switched in; None if it does not run, or if that is not known
+    """
+
+    priorities: set[int] = field(default_factory=set)
+    cores: set[int] = field(default_factory=set)
+    ran: int = 0
+    since: int | None = None
+
+    def leave(self, time: int) -> None:
+        """It is switched out."""
+        self.ran += 0 if self.since is None else time - self.since
+        self.since = None
+
+    def ran_until(self, time: int) -> int | None:
+        """How long it has run, None if it is not known to run now."""
+        return None if self.since is None else self.ran + time - self.since
+
+
 #: Of `prev_state`: 0 is ready, and so is what the kernel adds for a preemption; ended threads have these bits.
 _PREEMPTED = 0x100
 _ENDED = 0x10 | 0x20 | 0x80
 
 
 class LinuxScheduler(Interpreter):
-    """Takes the events of the scheduler and of interrupts."""
+    """Takes the events of the scheduler and of interrupts.
+
+    Attributes
+    ----------
+    threads : by their numbers
+    """
+
+    def __init__(self, rows: EventRows, states: ThreadStates, problems: TraceProblems, names: UniqueNames) -> None:
+        super().__init__(rows, states, problems, names)
+        self.threads: dict[int, LinuxThread] = {}
 
     def _switch(self, event: CtfEvent) -> None:
         fields, core = event.fields, self._core(event.core)
         before, after = self._thread(fields, "prev_"), self._thread(fields, "next_")
+        self._note(event)
         if before is not None:
             self._states.switch_out(core, before, _leaving(fields.get("prev_state", 0)))
         if after is not None:
             self._states.switch_in(core, after)
+
+    def lose(self) -> None:
+        """Forget which threads run."""
+        for thread in self.threads.values():
+            thread.since = None
+
+    def _note(self, event: CtfEvent) -> None:
+        before, after = (event.fields.get(f"{prefix}_tid") for prefix in ("prev", "next"))
+        if isinstance(before, int) and before in self.threads:
+            self.threads[before].leave(event.time)
+        if isinstance(after, int) and after:
+            thread = self.threads.setdefault(after, LinuxThread())
+            thread.since, priority = event.time, event.fields.get("next_prio")
+            thread.priorities |= {priority} if isinstance(priority, int) else set()
+            thread.cores |= {event.core} if event.core is not None else set()
 
     def _waking(self, event: CtfEvent) -> None:
         thread = self._thread(event.fields, "")

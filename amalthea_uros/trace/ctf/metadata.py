@@ -16,6 +16,7 @@ from amalthea_uros.trace.files import UnreadableError
 #: compression, encryption, checksum scheme, version.
 _MAGIC = 0x75D11D57
 _HEADER = struct.Struct("I16sIIIBBBBB")
+_COMMENT = b"/* CTF 1."
 _MOST_BYTES = 64 * 2**20
 _SECOND = 10**12
 #: The clock of stamps that name none: nanoseconds.
@@ -78,6 +79,16 @@ class Metadata:
     streams: Mapping[int, StreamType]
     clocks: Mapping[str, TraceClock]
     environment: Mapping[str, int | str]
+
+
+def is_metadata(path: Path) -> bool:
+    """Whether a file begins as metadata do (sections 7.1 and 7.2)."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(len(_COMMENT))
+    except OSError:
+        return False
+    return head == _COMMENT or head[:4] in (struct.pack(f"{order}I", _MAGIC) for order in "<>")
 
 
 def read_metadata(path: Path) -> Metadata:

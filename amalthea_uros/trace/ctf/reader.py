@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from heapq import merge
 from pathlib import Path
 
@@ -16,14 +16,26 @@ from amalthea_uros.trace.files import METADATA, TracePlace, TraceProblems, Unrea
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates
-from amalthea_uros.trace.table import NO_NOTE
+from amalthea_uros.trace.table import NO_NOTE, EventKind
 
 
 class CtfReader(TraceReader):
-    """Gives the events of the traces in a folder."""
+    """Gives the events of the traces in a folder.
+
+    Attributes
+    ----------
+    ros2, scheduler : what the events of ROS 2 and of Linux say, when they have been read; None if there are none
+    computers : the names of those that were recorded, as keys
+    """
+
+    #: Those of ROS 2 begin with a publication.
+    begin_of_chains = EventKind.CHAIN_STEP
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
+        self.ros2: Ros2 | None = None
+        self.scheduler: LinuxScheduler | None = None
+        self.computers: dict[str, None] = {}
         self._of_files: list[TraceProblems] = []
         self._rows = EventRows(self._index, self._problems)
         self._states = ThreadStates(self._rows, self._problems)
@@ -44,6 +56,8 @@ class CtfReader(TraceReader):
         if not traces:
             raise ReadError(self.findings)
         interpreters = _interpreters(self._rows, self._states, self._problems, [metadata for _, metadata in traces])
+        self._keep(interpreters.values())
+        self.computers |= dict.fromkeys(str(each.environment.get("hostname", "")) for _, each in traces)
         streams = [
             PacketStream(path, metadata, self._problems_of(path))
             for folder, metadata in traces
@@ -60,6 +74,7 @@ class CtfReader(TraceReader):
         if not event.name:
             if self._rows.move_to(event.time, number, TracePlace()):
                 self._states.lose(lost=NO_NOTE if event.lost is None else event.lost)
+            self._lose()
             return
         interpreter = interpreters.get(event.name)
         if interpreter is None:
@@ -68,6 +83,21 @@ class CtfReader(TraceReader):
             interpreter.add(event)
         else:
             self._states.lose()
+            self._lose()
+
+    def _lose(self) -> None:
+        for each in (self.ros2, self.scheduler):
+            if each is not None:
+                each.lose()
+
+    def _keep(self, interpreters: Iterable[Interpreter]) -> None:
+        for each in interpreters:
+            if isinstance(each, Ros2):
+                self.ros2 = each
+            elif isinstance(each, LinuxScheduler):
+                self.scheduler = each
+        if self.ros2 is not None and self.scheduler is not None:
+            self.ros2.threads = self.scheduler.threads
 
     def _traces(self) -> Iterator[tuple[Path, Metadata]]:
         for folder in trace_folders(self._path):

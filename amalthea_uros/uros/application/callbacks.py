@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 
+from amalthea_uros._internal.ports import parameter_services
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel
@@ -25,7 +26,6 @@ from amalthea_uros.spec.application import (
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import SECOND, Frequency, Time
-from amalthea_uros.uros.application.entities import PARAMETER_SERVICES
 from amalthea_uros.uros.application.messages import Message, incoming_message, outgoing_messages
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import Serving
@@ -57,6 +57,7 @@ class Callback:
     incoming : the message that makes it ready; None for timers and guard conditions, and if its size is not described
     outgoing : messages that each execution sends
     buffer : the label in which the executor leaves the message; None without one
+    handles : the number of handles that it has in its executor
     """
 
     section: CallbackSection
@@ -68,6 +69,7 @@ class Callback:
     incoming: Message | None
     outgoing: tuple[Message, ...]
     buffer: str | None
+    handles: int = 1
 
     @property
     def name(self) -> str:
@@ -108,7 +110,7 @@ def callbacks_of(application: Application, middleware: Middleware, notes: Notes)
         callback
         for node in application.nodes
         for kind, section in sections_of(node)
-        if (callback := _callback(kind, section, node, application.nodes, serving, notes)) is not None
+        if (callback := _callback(kind, section, node, application.nodes, serving, middleware.ros, notes)) is not None
     ]
     return tuple(found)
 
@@ -145,6 +147,7 @@ def _callback(
     node: NodeSection,
     nodes: Sequence[NodeSection],
     serving: Serving,
+    distribution: str | None,
     notes: Notes,
 ) -> Callback | None:
     executor, in_executor = serving.place(section, node, is_of_middleware=kind in _OF_MIDDLEWARE)
@@ -164,6 +167,7 @@ def _callback(
         incoming=incoming,
         outgoing=outgoing,
         buffer=(section.buffer or f"{section.name}_message") if incoming and isinstance(section, MessageCallback) else None,
+        handles=_handles(kind, node, distribution),
     )
 
 
@@ -236,10 +240,9 @@ def body_name(callback: str) -> str:
     return f"{callback}_Callback"
 
 
-def handle_count(callback: Callback) -> int:
-    """The number of handles that a callback has in its executor."""
-    if callback.kind is CallbackKind.PARAMETERS:
-        return PARAMETER_SERVICES
-    if callback.kind is CallbackKind.LIFECYCLE:
-        return 0 if callback.node.lifecycle is None else callback.node.lifecycle.services
+def _handles(kind: CallbackKind, node: NodeSection, distribution: str | None) -> int:
+    if kind is CallbackKind.PARAMETERS:
+        return parameter_services(distribution)
+    if kind is CallbackKind.LIFECYCLE:
+        return 0 if node.lifecycle is None else node.lifecycle.services
     return 1

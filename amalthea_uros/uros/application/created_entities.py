@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros._internal.ports import parameter_services
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.application import Application, NodeSection
-from amalthea_uros.uros.application.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, PARAMETER_SERVICES
+from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.uros.application.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES
 
 SESSION = "session"
 #: The kinds of entities that the agent sends data for.
@@ -31,14 +33,17 @@ class CreatedEntity:
         return self.kind in _RECEIVING
 
 
-def created_entities(application: Application) -> tuple[CreatedEntity, ...]:
+def created_entities(application: Application, middleware: Middleware) -> tuple[CreatedEntity, ...]:
     """All entities in the order of their creation: the session, then each node with its entities."""
     if not application.nodes:
         return ()
-    return (CreatedEntity(kind=SESSION, name="client"), *(entity for node in application.nodes for entity in _of_node(node)))
+    return (
+        CreatedEntity(kind=SESSION, name="client"),
+        *(entity for node in application.nodes for entity in _of_node(node, middleware)),
+    )
 
 
-def _of_node(node: NodeSection) -> Iterator[CreatedEntity]:
+def _of_node(node: NodeSection, middleware: Middleware) -> Iterator[CreatedEntity]:
     yield CreatedEntity(kind="participant", name=node.name)
     for publisher in node.publishers:
         yield from _publisher(publisher.topic)
@@ -57,7 +62,7 @@ def _of_node(node: NodeSection) -> Iterator[CreatedEntity]:
         for _ in range(ACTION_TOPICS):
             yield from _subscription(action.action)
     if node.parameter_server is not None:
-        yield from [CreatedEntity(kind="replier", name="parameters")] * PARAMETER_SERVICES
+        yield from [CreatedEntity(kind="replier", name="parameters")] * parameter_services(middleware.ros)
         if node.parameter_server.events:
             yield from _publisher("parameter_events")
     if node.lifecycle is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from amalthea_uros._internal.ports import parameter_services
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
@@ -10,8 +11,6 @@ from amalthea_uros.spec.middleware import Middleware
 #: An action server has services for goals, results and cancelling, and publishes feedback and its status; an action client has their
 #: counterparts (ros2/rcl rcl_action/src/rcl_action/action_server.c, action_client.c).
 ACTION_SERVICES, ACTION_TOPICS = 3, 2
-#: Of a parameter server (ros2/rclc rclc_parameter/src/rclc_parameter/parameter_server.c).
-PARAMETER_SERVICES = 6
 #: A lifecycle node with its communication interface creates all five services, however many are added to the executor, and a publisher
 #: (ros2/rcl rcl_lifecycle/src/com_interface.c).
 LIFECYCLE_SERVICES = 5
@@ -53,7 +52,7 @@ def entities_of(application: Application, middleware: Middleware) -> Entities:
         nodes=len(nodes),
         publishers=sum(map(_publishers, nodes)),
         subscriptions=sum(len(node.subscriptions) + ACTION_TOPICS * len(node.action_clients) for node in nodes),
-        services=sum(map(_services, nodes)),
+        services=sum(_services(node, middleware) for node in nodes),
         clients=sum(len(node.clients) + ACTION_SERVICES * len(node.action_clients) for node in nodes),
         guard_conditions=sum(len(node.timers) + len(node.guard_conditions) + len(node.action_servers) for node in nodes),
         executors=len(middleware.stated_executors) if any(map(_has_handles, nodes)) else 0,
@@ -65,8 +64,8 @@ def _publishers(node: NodeSection) -> int:
     return len(node.publishers) + ACTION_TOPICS * len(node.action_servers) + changes + (node.lifecycle is not None)
 
 
-def _services(node: NodeSection) -> int:
-    parameters = PARAMETER_SERVICES if node.parameter_server is not None else 0
+def _services(node: NodeSection, middleware: Middleware) -> int:
+    parameters = parameter_services(middleware.ros) if node.parameter_server is not None else 0
     lifecycle = LIFECYCLE_SERVICES if node.lifecycle is not None else 0
     return len(node.services) + ACTION_SERVICES * len(node.action_servers) + parameters + lifecycle
 

@@ -21,7 +21,7 @@ from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import ExecutorSection, MessageCost
 from amalthea_uros.units import DataSize, Time
-from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, handle_count
+from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.application.phases import ExecutorPhases
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.planned import trigger_name
@@ -54,7 +54,7 @@ class ExecutorRunnables:
     def spin(self, callbacks: Collection[Callback]) -> Runnable:
         """What every activation does for the callbacks that the executor has handles of."""
         executor, cost = self.executor, self.executor.execution_time
-        handles = sum(map(handle_count, callbacks))
+        handles = sum(each.handles for each in callbacks)
         parts = (cost.base, *([cost.per_timer] * timer_count(callbacks)), *([cost.per_handle] * handles))
         activities = self.context.converter.execute(parts, self.core, executor.location("execution_time"))
         return Runnable(name=spin_name(executor.name), activities=activities, origin=executor.location())

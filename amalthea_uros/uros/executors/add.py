@@ -56,7 +56,7 @@ def add_looping_executor(
         executor = replace(executor, poll=_poll(context, executor, core))
     least = _least_time(context.runnables[executor.spin], core, context)
     exclusive = has_one_message_per_iteration(executor, is_alone)
-    check_executor(executor, section, context.notes)
+    check_executor(executor, section, context.description.middleware, context.notes)
     context.executors.append(executor)
     context.tasks.append(
         PlannedTask(

@@ -21,10 +21,10 @@ from amalthea_uros.uros.application.notes import Notes
 _ACTIONS = (HandleKind.ACTION_SERVER, HandleKind.ACTION_CLIENT)
 
 
-def check_executor(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
+def check_executor(executor: Executor, section: spec.ExecutorSection, middleware: Middleware, notes: Notes) -> None:
     """Report what is wrong with an executor with a loop, or will surprise."""
     _check_keys(executor, section, notes)
-    _check_handle_limit(executor, section, notes)
+    _check_handle_limit(executor, section, middleware, notes)
     _check_timeout(executor, section, notes)
     _check_polling(executor, section, notes)
     _check_one(executor, section, notes)
@@ -41,13 +41,22 @@ def _check_keys(executor: Executor, section: spec.ExecutorSection, notes: Notes)
         notes.error("APP003", message, section.location("offset"), "Remove 'offset'.")
 
 
-def _check_handle_limit(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
+def _check_handle_limit(executor: Executor, section: spec.ExecutorSection, middleware: Middleware, notes: Notes) -> None:
     """`rclc_executor_init` allocates the handles once; each `rclc_executor_add_*` beyond them returns an error."""
     count, limit = len(executor.handles), section.max_handles
     if limit is not None and count > limit:
         left = ", ".join(handle.name for handle in executor.handles[limit:])
         message = f"{executor.name!r} needs {counted(count, 'handle')}, but has only {limit}: adding {left} returns an error"
-        notes.error("EXE001", message, section.location("max_handles"), f"Set 'max_handles' and rclc_executor_init to {count}.")
+        advice = f"Set 'max_handles' and rclc_executor_init to {count}"
+        servers = len(
+            {handle.name.rpartition("_")[0] for handle in executor.handles if handle.kind is HandleKind.PARAMETER_SERVICE}
+        )
+        if middleware.ros is None and count - servers <= limit:
+            # A parameter server had one handle less before iron.
+            message = f"{message}, unless ROS 2 is humble or older"
+            notes.warning("EXE001", message, section.location("max_handles"), f"{advice}, or state 'ros' under 'middleware'.")
+        else:
+            notes.error("EXE001", message, section.location("max_handles"), f"{advice}.")
 
 
 def _check_timeout(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:

@@ -19,7 +19,7 @@ from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerCo
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.application import MessageCallback, Subscription
 from amalthea_uros.spec.executors import ExecutorSection
-from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, handle_count
+from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.checks import depth_of
 from amalthea_uros.uros.middleware.profile import Profile
@@ -43,7 +43,7 @@ _SOURCES = {CallbackKind.ACTION_SERVER: 4, CallbackKind.ACTION_CLIENT: 5}
 def handle_names(callback: Callback) -> tuple[str, ...]:
     """The names of the handles of a callback."""
     if callback.kind in (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE):
-        return tuple(f"{callback.name}_{number}" for number in range(1, handle_count(callback) + 1))
+        return tuple(f"{callback.name}_{number}" for number in range(1, callback.handles + 1))
     return (callback.name,)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from amalthea_uros._internal.ports import Port, known_ports
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.middleware.options import OptionRow, option_rows
@@ -31,11 +32,18 @@ class XrceBuild:
     defaults: Mapping[str, int]
 
     @property
+    def port(self) -> Port | None:
+        """The port, if it is stated."""
+        return known_ports().get(self.middleware.port or "")
+
+    @property
     def transport(self) -> str:
         """The transport that the middleware is built with; microcontrollers have a custom one for serial lines, too."""
         wire, limits = self.middleware.transport, self.middleware.limits
         if limits.RMW_UXRCE_TRANSPORT is not None:
             return limits.RMW_UXRCE_TRANSPORT
+        if self.port is not None and self.port.is_custom:
+            return "custom"
         if (
             wire.serial is not None
             and limits.UCLIENT_SERIAL_TRANSPORT_MTU is not None
@@ -76,6 +84,8 @@ class XrceBuild:
         if (stated := self.stated(row)) is not None:
             return stated
         other = self.defaults.get("MTU") if name == self.mtu_option else self.defaults.get(name)
+        if other is None and self.port is not None:
+            other = self.port.pools.get(name)
         return other if other is not None else row.default or 0
 
     def stated(self, row: OptionRow) -> int | None:

@@ -5,7 +5,7 @@ micro-ROS/rmw_microxrcedds: `uxr_run_session_until_confirm_delivery` follows eac
 that is not acknowledged.
 
 The static memory consists of the structures in src/types.h of rmw_microxrcedds and in include/uxr/client of the client, on 32-bit
-targets; the sizes of entities are within 10 %. Besides, the middleware uses the heap while entities are created and destroyed, but not
+targets, compiled for ARM. Besides, the middleware uses the heap while entities are created and destroyed, but not
 while it spins; strings and sequences of messages are allocated by the application.
 """
 
@@ -25,16 +25,18 @@ from amalthea_uros.uros.middleware.profile import CreationFigures, Heartbeat, Me
 from amalthea_uros.uros.middleware.xrce_dds.build import rows
 from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, contents_of
 
+#: Bytes of a session, besides its buffers.
+_SESSION = 432
 #: Bytes of a slot for a received message, besides its buffer.
 _SLOT = 64
 #: Reliable messages that the agent sends before the first one is acknowledged: its reliable stream in eProsima/Micro-XRCE-DDS-Agent.
 _AGENT_WINDOW = 16
 #: Bytes of an entity.
 _ENTITIES = {
-    "RMW_UXRCE_MAX_PUBLISHERS": 224,
-    "RMW_UXRCE_MAX_SUBSCRIPTIONS": 224,
-    "RMW_UXRCE_MAX_SERVICES": 208,
-    "RMW_UXRCE_MAX_CLIENTS": 208,
+    "RMW_UXRCE_MAX_PUBLISHERS": 216,
+    "RMW_UXRCE_MAX_SUBSCRIPTIONS": 216,
+    "RMW_UXRCE_MAX_SERVICES": 200,
+    "RMW_UXRCE_MAX_CLIENTS": 200,
     "RMW_UXRCE_MAX_NODES": 164,
     "RMW_UXRCE_MAX_TOPICS": 28,
     "RMW_UXRCE_MAX_GUARD_CONDITION": 32,
@@ -147,8 +149,8 @@ class XrceDds(MessageLayout):
         mtu, (inputs, outputs) = self.build.mtu, self.build.histories
         session = MemoryUse(
             name="streams and receive buffer of the session",
-            size=sessions * mtu * (inputs + outputs + 2),
-            formula=f"{sessions} x {mtu} B x ({inputs} + {outputs} + 1 + 1)",
+            size=sessions * (mtu * (inputs + outputs + 2) + _SESSION),
+            formula=f"{sessions} x ({mtu} B x ({inputs} + {outputs} + 1 + 1) + {_SESSION} B)",
         )
         messages = MemoryUse(
             name="slots for received messages",

@@ -16,10 +16,13 @@ from amalthea_uros.metamodel.classes import (
     ModeLabel,
     ModeLabelAccess,
     ModeLabelCondition,
+    ModeSwitch,
     ModeValueCondition,
     NumericMode,
+    ProbabilitySwitch,
     SemaphoreAccess,
     StringObject,
+    Switch,
     Task,
 )
 from amalthea_uros.validate.context import Context
@@ -59,6 +62,12 @@ def _check_condkind(element: Condition, context: Context) -> Iterator[str | Down
 def _is_of_same_kind(first: ModeLabel, second: ModeLabel) -> bool:
     """Whether both have an enum mode or both a numeric one; am2inc reads a first label without a mode as numeric."""
     return isinstance(second.mode, EnumMode if isinstance(first.mode, EnumMode) else NumericMode)
+
+
+@model_rule("INC-SW-GROUPNAME", Group)
+def _check_group_name(element: Group, context: Context) -> Iterator[str]:
+    if element.name and element.items and isinstance(element.items[0], Switch | ModeSwitch | ProbabilitySwitch):
+        yield f"the name of the group {element.name!r} is dropped by am2inc, because it begins with a {type(element.items[0]).__name__}"
 
 
 #: The orders in which a group of a callback server can dispatch its services.

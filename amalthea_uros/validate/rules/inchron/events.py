@@ -147,7 +147,8 @@ def _check_set(element: AbstractEventChain, context: Context) -> Iterator[str | 
                 yield Downgraded(f"the {end} of the event chain {name!r} is a set of {count} events")
     for segment in [] if is_parallel(element) else parts(element)[1:]:
         count = _size(segment.stimulus)
-        if segment.stimulus is not None and count != 1 and is_converted(segment.stimulus):
+        # The events of a segment without items of its own are joined by a barrier.
+        if segment.stimulus is not None and is_converted(segment.stimulus) and (count == 0 or (count > 1 and segment.items)):
             size = f"a set of {count} events" if count else "an empty event set"
             yield f"the stimulus of the segment {segment.name or ''!r} of the event chain {name!r} is {size}"
 

@@ -59,6 +59,9 @@ def _holders(context: Context) -> dict[type[Element], Element]:
     return found
 
 
+#: What the types of numbers end with.
+_NUMBERS = ("Int", "Long", "BigInteger", "Integer", "Float", "Double")
+
 _TAG = re.compile(r"<(?P<name>[^\s/>!?]+)").match
 
 
@@ -131,7 +134,13 @@ def _not_read(element: Element, class_name: str, known: VersionFacts) -> Iterato
         if feature is None and not name.startswith("xmlns"):
             yield Downgraded(f"{class_name} has no attribute {name!r} in AMALTHEA {known.version}")
         elif feature is not None and own.feature(class_name, name) and not _is_literal(text, feature.type, known):
-            yield f"{text!r} is not a valid value of the attribute {name!r} of {class_name}"
+            message = f"{text!r} is not a valid value of the attribute {name!r} of {class_name}"
+            # Numbers are not checked: what is read is 0, the digits at the beginning, or any value.
+            yield (
+                Downgraded(f"{message}; am2inc reads another number")
+                if feature.type.removesuffix("Object").endswith(_NUMBERS)
+                else message
+            )
     prefixes = document.source.prefixes if document.source is not None else Prefixes()
     for _, raw in extras.content:
         tag = _TAG(raw)

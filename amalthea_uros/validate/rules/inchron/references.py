@@ -25,7 +25,6 @@ from amalthea_uros.metamodel.classes import (
     ModeLabelCondition,
     ModeSwitchEntry,
     ModeValueCondition,
-    Process,
     ProcessingUnit,
     ProcessPrototype,
     RunnableCall,
@@ -71,7 +70,6 @@ _CRASHING: Mapping[type[Element], tuple[str, ...]] = {
     ModeLabelCondition: ("label1", "label2"),
     ProcessingUnit: ("frequencyDomain",),
     TaskAllocation: ("task",),
-    Process: ("stimuli",),
     MemoryMapping: ("abstractElement",),
     EventChain: ("stimulus", "response"),
 }

@@ -20,7 +20,7 @@ from amalthea_uros.metamodel.classes import (
     TimeUniformDistribution,
     VariableRateStimulus,
 )
-from amalthea_uros.metamodel.magnitudes import TIMES, picoseconds
+from amalthea_uros.metamodel.magnitudes import in_one_unit
 from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, model_rule, repair_of
@@ -96,10 +96,4 @@ def _bounds(stimulus: RelativePeriodicStimulus) -> list[Time]:
 @repair_of("INC-ST-RELPER-UNIT")
 def _fix_relper_unit(element: RelativePeriodicStimulus, context: Context) -> bool:
     """State both bounds in the finer unit, in which both are whole numbers."""
-    times = [(bound, picoseconds(bound)) for bound in _bounds(element)]
-    unit = min((bound.unit for bound, _ in times if bound.unit in TIMES), key=TIMES.__getitem__, default=None)
-    if unit is None or any(time is None for _, time in times):
-        return False
-    for bound, time in times:
-        bound.value, bound.unit = (time or 0) // TIMES[unit], unit
-    return True
+    return in_one_unit(*_bounds(element))

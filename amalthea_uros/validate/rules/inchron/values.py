@@ -1,8 +1,8 @@
-"""Values that am2inc replaces by a default if they are missing."""
+"""Values that am2inc replaces by a default if they are missing, or by others if it cannot hold them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from amalthea_uros.metamodel.classes import (
     ISR,
@@ -12,6 +12,7 @@ from amalthea_uros.metamodel.classes import (
     Frequency,
     HwModule,
     HwPort,
+    IntegerObject,
     Label,
     Memory,
     Runnable,
@@ -19,6 +20,7 @@ from amalthea_uros.metamodel.classes import (
     Task,
     Time,
 )
+from amalthea_uros.metamodel.element import Element
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import model_rule
 from amalthea_uros.validate.rules.inchron.importer import amount, has_unit, metamodel
@@ -35,6 +37,29 @@ def _check_memory_size(element: Memory | Cache, context: Context) -> Iterator[st
     size = element.definition.size if element.definition is not None else None
     if size is None or not has_unit(size):
         yield f"the memory {element.name or ''!r} has no definition with a size and a unit"
+
+
+#: Bits of the numbers that am2inc reads, by the class and the feature that hold them; larger ones are cut to the largest.
+_BITS: Mapping[type[Element], tuple[str, int]] = {
+    Task: ("multiple_task_activation_limit", 32),
+    IntegerObject: ("value", 32),
+    Time: ("value", 64),
+}
+
+
+@model_rule("INC-IO-RANGE", *_BITS)
+def _check_range(element: Task | IntegerObject | Time, context: Context) -> Iterator[str]:
+    feature, bits = next(entry for cls, entry in _BITS.items() if isinstance(element, cls))
+    value = getattr(element, feature)
+    if value is not None and not -(2 ** (bits - 1)) <= value < 2 ** (bits - 1):
+        yield f"the value {value} of the {type(element).__name__} does not fit into {bits} bits and is changed by am2inc"
+
+
+@model_rule("INC-SW-LIMIT", Task)
+def _check_limit(element: Task, context: Context) -> Iterator[str]:
+    limit = element.multiple_task_activation_limit
+    if limit is not None and limit < 0:
+        yield f"the activation limit {limit} of the task {element.name or ''!r} is changed to 1 by am2inc"
 
 
 @model_rule("INC-ST-NONE", Task, ISR)

@@ -1,0 +1,1 @@
+"""The host in a recording of ROS 2, and the description of it."""
