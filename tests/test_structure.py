@@ -18,7 +18,7 @@ from support import ROOT
 LINES = {
     "__init__": 257,
     "__main__": 3,
-    "_internal": 800,
+    "_internal": 927,
     "_version": 1,
     "am": 2,
     "analyze": 8575,
@@ -46,7 +46,7 @@ LINES = {
     "source": 2715,
     "spec": 2498,
     "timing": 5524,
-    "trace": 5056,
+    "trace": 5057,
     "units": 200,
     "uros": 6845,
     "validate": 3629,

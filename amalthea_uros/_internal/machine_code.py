@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from importlib.util import find_spec
 from os import environ
 from os.path import expanduser
 from pathlib import Path
+
+from amalthea_uros._internal.records import dataclass
 
 #: About how long it takes to load numba and what it has kept, in seconds.
 LOADING = 0.5

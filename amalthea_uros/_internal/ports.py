@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cache
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.resources import PLATFORMS, yaml_data
 
 #: Distributions of ROS 2 with micro-ROS, the oldest first.

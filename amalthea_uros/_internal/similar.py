@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+
+from amalthea_uros._internal.records import dataclass
 
 #: Longer names are not compared, because the time of a comparison grows with the product of the lengths.
 MAX_LENGTH = 200

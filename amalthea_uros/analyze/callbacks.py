@@ -8,11 +8,11 @@ what the job still executes at least after the call.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from math import lcm
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, times_of_completion
 from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import partial
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity

@@ -7,10 +7,10 @@ there is at most its worst execution time, times the highest rate of its activat
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.results.needs import ExecutionOnCores
 from amalthea_uros.perf.activities import Waiting
 from amalthea_uros.perf.software import Process

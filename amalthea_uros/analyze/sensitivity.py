@@ -8,9 +8,9 @@ starts earlier reads older data. The maximum factor is found by bisection.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis, require_analysis
 from amalthea_uros.analyze.results.processes import RequirementResult

@@ -7,10 +7,10 @@ becomes a finding, and the rest is extracted.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.bridge.basics.context import Extracting
 from amalthea_uros.bridge.tables.constraints import extract_data_group, extract_requirement
 from amalthea_uros.bridge.tables.hardware import HardwareExtractor

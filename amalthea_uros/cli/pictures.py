@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time
 

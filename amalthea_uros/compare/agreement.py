@@ -11,11 +11,11 @@ distribution of times is not stated, neither do means and percentiles that depen
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, sqrt
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.results import Agreement, ComparisonRow, PredictionClaim, Statistic, is_bound
 from amalthea_uros.measure.series import Series, TimeStatistics
 from amalthea_uros.timing.stated_distributions import Basis

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.compare.agreement import LEAST, Rule, compared
 from amalthea_uros.compare.bases import bases

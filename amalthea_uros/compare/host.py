@@ -8,10 +8,10 @@ latency of the topic and that response time. A timer is called within its respon
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.agreement import Prediction
 from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.compare.results import PredictionClaim, Statistic

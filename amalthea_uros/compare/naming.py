@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.compare.measured.receptions import ARROW, receptions
 from amalthea_uros.compare.results import Statistic

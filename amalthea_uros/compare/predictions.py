@@ -7,10 +7,10 @@ at any time, for example, but the measured one is that of the worst events, so t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.response_times.metrics import merged
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity

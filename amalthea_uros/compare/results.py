@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding, Severity

@@ -9,10 +9,10 @@ Then there is a further, shorter run in each phase, and what they have together 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from typing import Self
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.phases import MOST_PHASES, systems_in_phases
 from amalthea_uros.measure.jobs import JobFollower

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact
 from amalthea_uros.analyze.results.analysis import Analysis

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from itertools import chain as joined
 from itertools import zip_longest
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.explanations import CauseKind, ChainExplanation

@@ -7,9 +7,9 @@ the system can state them; so nothing of the results is kept but how many proces
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import count
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply

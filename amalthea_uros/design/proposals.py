@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Effect, Impact, ImpactRow, impact
 from amalthea_uros.analyze.results.analysis import Analysis

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, floor
 from operator import index
 from typing import Literal, TypeVar
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import (

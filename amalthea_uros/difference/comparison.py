@@ -8,11 +8,11 @@ value.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.difference.fingerprint import Fingerprints, UnsetAttributes, is_sequence, unknown_content
 from amalthea_uros.difference.matching import ElementMatching
 from amalthea_uros.difference.names import (

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from lsprotocol import types
 from pygls.workspace import PositionCodec
 
 from amalthea_uros._internal.paths import is_description, is_other_yaml
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.services.files_of_model import files_of_model
 
 #: The ends of lines of the protocol; `str.splitlines` knows more.

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from urllib.parse import unquote
 
 from lsprotocol import types
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, read_nodes

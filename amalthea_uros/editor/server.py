@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,6 +16,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.uris import to_fs_path
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._version import __version__
 from amalthea_uros.editor.diagnostics import diagnostics_of
 from amalthea_uros.editor.document import TextDocument

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 
 

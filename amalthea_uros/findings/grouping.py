@@ -6,11 +6,11 @@ import re
 from bisect import bisect_left, insort
 from collections import defaultdict
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, worst
 from amalthea_uros.findings.flaws import CONSEQUENCES, FLAWS, Consequence, FindingSource, Flaw
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from string import Template
 from typing import Any
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.resources import parsed_yaml
 from amalthea_uros.diagnostics import Severity
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.findings.accepted import fingerprint
 from amalthea_uros.findings.grouping import FindingGroup, group

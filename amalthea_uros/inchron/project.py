@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.metamodel.source import SourceText

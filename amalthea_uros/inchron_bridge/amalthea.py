@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron.write import link_opposites

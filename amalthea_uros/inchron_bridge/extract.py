@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.bridge.basics.middleware_flaws import (
     flaw_of_executor,
     flaw_of_host,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.timing.basics.quantities import jitter_of
 from amalthea_uros.units import Time
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from math import inf
 from typing import Generic, Protocol, TypeVar
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.judge.causes import Failing, FailureCause, causes, processes_of, quantity_of
 from amalthea_uros.judge.margins import Limited, share_left, tightest
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict

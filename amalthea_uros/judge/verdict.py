@@ -7,12 +7,12 @@ proof: the verdict is *observed as kept*, never *met*. That it was missed is one
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from typing import TypeVar
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.judge.evidence import Ends, ObservedProcess, ObservedValues, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import SystemLimit
 from amalthea_uros.units import Time, number_text, time_text

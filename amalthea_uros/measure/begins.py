@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.table import EventKind
 

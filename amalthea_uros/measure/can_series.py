@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.measure.chains import reactions
 from amalthea_uros.measure.markers import (
     Decoder,

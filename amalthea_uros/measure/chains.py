@@ -11,13 +11,13 @@ those of the model. It ends with the last step.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.measure.begins import BEGINS, ChainBegin, begin_name
 from amalthea_uros.measure.pairing import counted_on, lost_numbers
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of

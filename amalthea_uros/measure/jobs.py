@@ -7,11 +7,11 @@ do not. The times follow from when a job was activated, started and ended, and h
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.measure.begins import ACTIVATION, END_OF_WAIT, FROM_ACTIVATION, ModelBegins
 from amalthea_uros.measure.series import Counts, MeasuredKind, Series, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.trace.can.frames import EXTENDED, FrameKind, FrameTable

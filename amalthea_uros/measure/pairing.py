@@ -6,11 +6,10 @@ open, and an event that stands before an earlier one ends what is open.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.measure.series import Counts
 
 #: By so many numbers events may overtake each other; a counter that goes back further has started again.

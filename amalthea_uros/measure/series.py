@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from math import ceil, log, sqrt
 from typing import Final
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError

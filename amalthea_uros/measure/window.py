@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import Time, time_text
 

@@ -15,9 +15,9 @@ stays small.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar, dataclass_transform
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.metamodel.containment import ReferenceList, attach, detach, mark_modified
 from amalthea_uros.metamodel.features import containments_of, features_of

@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.metamodel.element import Element
 
 _BEYOND_ASCII = re.compile(r"[^\x00-\x7f]+")

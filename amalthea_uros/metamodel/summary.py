@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model

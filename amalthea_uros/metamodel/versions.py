@@ -5,10 +5,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.metamodel.factfile import ClassFact, EnumFact, FactBlock, FeatureFact, FeatureKind, NumberFact, blocks
 
 _FACTS = Path(__file__).with_name("facts")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.distributions import Distribution
 from amalthea_uros.perf.named import Locate

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import Frequency, Time
 

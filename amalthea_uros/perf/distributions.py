@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Generic, TypeAlias, TypeVar
+
+from amalthea_uros._internal.records import dataclass
 
 #: What is distributed: int for ticks and times, float for rates.
 N = TypeVar("N", int, float)

@@ -6,9 +6,9 @@ what has arrived, and on what the thread waits for. In `software`, its task exec
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import Time
 

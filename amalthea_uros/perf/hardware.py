@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.distributions import Distribution
 from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import BitRate, DataSize, Frequency

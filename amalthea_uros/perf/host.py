@@ -6,9 +6,9 @@ of its own. Kinds of handles and bounds of times are the same.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.perf.network import Span

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief, Located
 from amalthea_uros.perf.os import Parameter
 from amalthea_uros.units import Time

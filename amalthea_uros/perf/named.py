@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
 from functools import partial
 from reprlib import Repr
 from typing import Any, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field, fields
 from amalthea_uros.diagnostics import Location
 
 #: Finds the place in a file that an activity comes from; there are too many activities to find it for each.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.activities import Activity, Protection
 from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.named import Brief, Named

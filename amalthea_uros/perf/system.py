@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeVar
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.perf.activities import Activity, LabelAccess, transformed, walk
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events

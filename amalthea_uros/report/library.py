@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from io import StringIO
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Changes
 from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.report import formats

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.results import Comparison
 from amalthea_uros.design.campaign.sweeps import SweepResult
 from amalthea_uros.design.stated_times import TimeLike, stated_time

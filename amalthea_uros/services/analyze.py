@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code

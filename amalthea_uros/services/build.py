@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_file
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError, InvalidArgumentError

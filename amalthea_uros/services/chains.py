@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath, is_description
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding

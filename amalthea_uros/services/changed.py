@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import TEXT
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes, Sweep, as_changes
 from amalthea_uros.design.changes.key import Configuration

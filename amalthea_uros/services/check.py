@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath, by_model, without_other_yaml
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Severity, by_place
 from amalthea_uros.errors import ReadError

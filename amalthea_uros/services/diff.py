@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.design.changes.apply import Difference

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.paths import StrPath, by_model, is_description, without_other_yaml
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.services.check import selection_of
 from amalthea_uros.services.files import FileChange

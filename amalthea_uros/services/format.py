@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.versions import spelled

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_file, read_text
 from amalthea_uros._internal.limits import SETTINGS_SIZE
 from amalthea_uros._internal.paths import StrPath, folder_of
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError

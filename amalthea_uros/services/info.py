@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.metamodel.summary import ModelSummary, summarise

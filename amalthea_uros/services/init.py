@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.files import is_stream
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import PLATFORMS, known_platforms, resource_folder
 from amalthea_uros.services.files import save_new
 

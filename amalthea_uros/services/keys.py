@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.key import UNSET
 from amalthea_uros.design.changes.kinds import KINDS
 from amalthea_uros.services.changed import ChangedSystem, open_changed

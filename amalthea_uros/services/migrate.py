@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import AmurosError

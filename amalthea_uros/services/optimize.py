@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.design.changes.change import Sweep, parse_sweep

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.entry_points import installed, instances_in, package_of
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import LatencyQuantity

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference

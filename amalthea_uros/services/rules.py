@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.campaign.run import RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.paths import TEXT, StrPath
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.kinds import refuse_wire
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.results.analysis import Analysis

@@ -7,10 +7,10 @@ to the nearest picosecond.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
 from amalthea_uros.judge.margins import margin_of

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings

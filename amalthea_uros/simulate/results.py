@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Record, Shown
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.judge.margins import tightest

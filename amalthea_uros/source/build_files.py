@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from amalthea_uros._internal.ports import DISTRIBUTIONS, known_ports
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.facts import CodeOption, Stated
 from amalthea_uros.source.files import SourceFile

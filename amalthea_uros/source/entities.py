@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeEntityKind
 from amalthea_uros.source.messages import MessageType
 from amalthea_uros.source.scope import Expression, called

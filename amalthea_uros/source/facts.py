@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location
 from amalthea_uros.source.messages import MessageType
 from amalthea_uros.source.program import CodeFunction

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_directory, read_bytes
 from amalthea_uros._internal.limits import ADVICE, SOURCE_FILES, SOURCE_SIZE, SOURCES_SIZE
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from types import MappingProxyType
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import parsed_yaml
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.idl import idl_types

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.syntax import descendants, parse, text_of
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram
 from amalthea_uros.source.syntax import parse_expression, text_of

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.limits import SOURCE_NODES
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of

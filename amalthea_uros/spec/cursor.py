@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import yaml
+
+from amalthea_uros._internal.records import dataclass, field
 
 #: What is written at the cursor to find the place; no key of anybody.
 _MARK = "amuros-place-of-the-cursor"

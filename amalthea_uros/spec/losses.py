@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any, Self, TypeAlias
 
 from pydantic import model_validator
 
 from amalthea_uros import units
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.section import Shorthand
 from amalthea_uros.spec.validators import Before
 from amalthea_uros.spec.values import editor_schema, problem, unexpected

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -11,6 +10,7 @@ from pydantic import ValidationError
 
 from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.content import nodes_of

@@ -7,12 +7,13 @@ each section, which took a third of the time of a short command.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_after_validator_function, no_info_before_validator_function
+
+from amalthea_uros._internal.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

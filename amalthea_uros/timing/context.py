@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from enum import StrEnum
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.units import Time
 
 

@@ -7,11 +7,11 @@ distribution: neither a mean nor a percentile follows. What influences a process
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 
 from amalthea_uros._internal.graphs import reached
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.activities import (
     Activity,
     Count,

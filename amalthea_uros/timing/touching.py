@@ -11,10 +11,10 @@ activation says, so that neither its response time nor those of processes of low
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from amalthea_uros._internal.graphs import reached
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call, Incomplete, Migrate, Trigger
 from amalthea_uros.perf.conditions import read_by

@@ -13,8 +13,8 @@ Everything else is refused, with what is missing.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import ClearEvent, SetEvent, WaitEvent, Waiting
 from amalthea_uros.perf.distributions import highest, lowest

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
 from amalthea_uros.trace.vocabulary import ENTERING, LEAVING
 

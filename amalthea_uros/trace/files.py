@@ -6,7 +6,6 @@ import gzip
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
 from functools import partial
 from io import TextIOWrapper
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import IO, TextIO, cast
 
 from amalthea_uros._internal.files import is_file
 from amalthea_uros._internal.limits import TRACE_LINE
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 
@@ -31,6 +31,10 @@ class TracePlace:
     line: int | None = None
     column: int | None = None
     text: str | None = None
+
+
+#: In a file as a whole.
+_NOWHERE = TracePlace()
 
 
 class UnreadableError(Exception):
@@ -54,7 +58,7 @@ class TraceProblems:
         self._path = path
         self._found: dict[tuple[str, str], tuple[Finding, int]] = {}
 
-    def add(self, rule: str, severity: Severity, message: str, place: TracePlace = TracePlace(), advice: str = "") -> None:
+    def add(self, rule: str, severity: Severity, message: str, place: TracePlace = _NOWHERE, advice: str = "") -> None:
         """Add a problem, or an occurrence of one; the message says nothing that differs between occurrences."""
         finding, count = self._found.get((rule, message), (None, 0))
         if finding is None:

@@ -6,7 +6,6 @@ import gzip
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from datetime import datetime
 from importlib import import_module
 from pathlib import Path
@@ -14,6 +13,7 @@ from types import TracebackType
 from typing import BinaryIO, Self, cast
 
 from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable, replacing, write_bytes
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.trace.table import Entity, EventTable, concatenate

@@ -7,11 +7,11 @@ it were right.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.files import TracePlace, TraceProblems
 from amalthea_uros.trace.readers import open_trace

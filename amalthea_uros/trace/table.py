@@ -7,13 +7,13 @@ added. Rows are in the order in which the events occur; time never decreases.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields
 from enum import IntEnum, StrEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass, field, fields
 from amalthea_uros.errors import InvalidArgumentError
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System

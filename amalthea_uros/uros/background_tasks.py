@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.distributions import Uniform

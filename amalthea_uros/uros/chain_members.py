@@ -8,9 +8,9 @@ the middle is sent by a callback before it, and received by one after it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise, product
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.errors import ReadError, UnknownError
 from amalthea_uros.perf import events as perf

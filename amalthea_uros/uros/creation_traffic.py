@@ -8,9 +8,9 @@ several acknowledgements in one, so that only their maximum is known.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.units import DataSize, Time

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from itertools import islice
 
 from amalthea_uros._internal.ports import known_ports
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.perf.named import Brief

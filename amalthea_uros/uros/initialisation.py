@@ -11,9 +11,9 @@ A thread waits for each response before it sends the next request (micro-ROS/rmw
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.hardware import MemoryKind
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System

@@ -6,8 +6,7 @@ Functions of the job have the same meaning in every tool.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.software import IsrCategory, Runnable

@@ -9,8 +9,8 @@ of these tasks. Of the periods that satisfy the rules, the longest one costs lea
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text

@@ -9,9 +9,9 @@ Merriam and Tracey 2000, "How embedded applications using an RTOS can stay withi
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from math import inf
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.software import Preemption, Task

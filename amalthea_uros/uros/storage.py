@@ -7,8 +7,8 @@ in `memory`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.metamodel.element import Element

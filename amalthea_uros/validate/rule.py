@@ -7,10 +7,10 @@ of findings: violations of the XML schema, and problems of building a system.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, NamedTuple
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.metamodel.element import Element

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings import catalogue

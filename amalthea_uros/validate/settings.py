@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from amalthea_uros._internal.files import STANDARD_INPUT, FileError, is_file, read_text, resolved
 from amalthea_uros._internal.limits import SETTINGS_SIZE
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError

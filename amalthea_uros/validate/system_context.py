@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.activations import Activations
 from amalthea_uros.timing.activation.load import activation_rates, certain_loads, loads, suppressible

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache, partial
 from typing import TYPE_CHECKING, cast
 
 from lxml import etree
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Location, Severity

@@ -7,11 +7,11 @@ when what comes after it still fits into the response time, or when the busy win
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteBounds, ReadWriteTimes
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core_schedule import Busy, times_of_completion

@@ -21,13 +21,13 @@ Each bound is the sum of its terms: for each task the time until it reads, and t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from math import gcd, lcm
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.units import Time
 

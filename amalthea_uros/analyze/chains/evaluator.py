@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 
 import numpy as np
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.chains.job_chains import TOO_MANY_JOBS, JobBudget
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.route_latencies import RouteLatencies

@@ -7,9 +7,9 @@ sum, so that the smaller one counts.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.chains.segments import ChainSegment, HostSegment, name_of
 from amalthea_uros.analyze.host.handover import violated
 from amalthea_uros.analyze.host.results import HostResults

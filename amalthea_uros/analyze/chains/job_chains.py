@@ -9,13 +9,13 @@ analysis of asynchronized distributed cause-effect chains", ACM Transactions on 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from math import lcm
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass, fields, replace
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes, TimedStage, reach
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.units import Time

@@ -7,10 +7,10 @@ safe bound of the latency, and the sum of the best cases a lower one.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.host_hops import HostHops
 from amalthea_uros.analyze.chains.message_hops import CallbackHops, task_hop

@@ -14,10 +14,10 @@ wires separate parts in the same way.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.segments import CallbackSegment, EntryKind, TaskSegment
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue

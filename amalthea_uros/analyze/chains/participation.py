@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.software import Process

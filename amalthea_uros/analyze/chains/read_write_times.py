@@ -6,12 +6,12 @@ In the steady state these times repeat in each cycle, so that they can be extend
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from math import lcm
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.chains.bounds import ChainTask
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.timing.jobs.counters import first_effect, is_always

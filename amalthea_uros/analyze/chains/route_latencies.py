@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.chains import bounds, job_chains
 from amalthea_uros.analyze.chains.bounds import ChainTask, total
 from amalthea_uros.analyze.chains.read_write_times import TimedStage

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.results import HopKind
 from amalthea_uros.executors.semantics.callbacks import handle_around, taker

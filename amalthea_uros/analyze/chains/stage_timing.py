@@ -7,9 +7,9 @@ schedule. Otherwise releases and response times give the bounds. If releases are
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
 from math import lcm
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.chains.boundary_times import (
     BoundaryWindows,
     by_response,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import permutations
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.results.chains import LatencyQuantity, LatencyValue
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit

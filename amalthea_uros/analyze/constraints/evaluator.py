@@ -8,11 +8,11 @@ that caused it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeAlias
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.constraints.ends import LatencyEnds, distance_of, moved, repetition_jitter, spread_of
 from amalthea_uros.analyze.constraints.events import EventWindows, exact_delays, holds_across, holds_in_each_job

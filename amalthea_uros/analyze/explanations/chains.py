@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.chains import bounds, job_chains
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobPath, worst_path

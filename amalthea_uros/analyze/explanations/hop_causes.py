@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.chains.boundary_times import is_logical
 from amalthea_uros.analyze.chains.read_write_times import TimedStage
 from amalthea_uros.analyze.chains.stage_timing import StageTiming

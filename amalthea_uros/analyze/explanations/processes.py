@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.core_schedule import METHOD, CoreSchedule
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis

@@ -8,9 +8,9 @@ or all of them fit on the only core; the global EDF of several cores promises le
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.host import Host, HostExecutor, HostExecutorKind, HostPolicy

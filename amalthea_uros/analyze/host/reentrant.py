@@ -10,8 +10,8 @@ reentrant groups only.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 

@@ -8,8 +8,8 @@ takes time, the jitter is what the times before vary (K. Richter 2005). It is fo
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.host import polled, reentrant
 from amalthea_uros.analyze.host.processor import HostProcessor, processor_of
 from amalthea_uros.analyze.host.topics import HostTopics, delayed

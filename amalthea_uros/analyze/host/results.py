@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.executors.results import ExecutorResult
 

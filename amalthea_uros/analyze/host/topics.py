@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from amalthea_uros._internal.graphs import circles
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import agent_hop, sent, variation

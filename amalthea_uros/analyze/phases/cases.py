@@ -11,11 +11,11 @@ no effect, because all evaluations cover whole cycles.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, cached_property
 from math import gcd, lcm
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution

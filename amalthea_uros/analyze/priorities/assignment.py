@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import islice, permutations
 from math import factorial
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.priorities.orders import Order, PriorityOrders, with_priorities
 from amalthea_uros.analyze.results.analysis import Analysis, require_analysis

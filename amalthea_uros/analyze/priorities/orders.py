@@ -11,8 +11,8 @@ offsets keep each other off: then other choices among the tasks that fit are tri
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.response_times.critical_instant import certain_response, keep_off_alike
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system

@@ -16,9 +16,9 @@ execute in it for two more reasons, and then the level is lowered until they bel
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.blocking.regions import NonPreemptiveRegions, ProcessRegions, RegionKind

@@ -7,12 +7,12 @@ period and the minimum distance, because ceil(ceil(x / p) / n) = ceil(x / (p n))
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS, demand_in, least_fixed_point
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.timing.basics.time_base import LIMIT

@@ -8,11 +8,11 @@ constant, it is the only behaviour of the core. It is followed until its state i
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from math import lcm
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import SchedulePoint
 from amalthea_uros.perf.software import Preemption, Task

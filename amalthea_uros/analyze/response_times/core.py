@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from itertools import groupby
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times import fixed_priority, priority_levels
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference

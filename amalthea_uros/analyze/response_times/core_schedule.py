@@ -12,13 +12,13 @@ may still access at once, or only when it has the core again, or, if the access 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.schedule import Jobs, PeriodicTask

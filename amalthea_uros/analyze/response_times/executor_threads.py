@@ -16,9 +16,9 @@ suspended.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import AnalysedTask

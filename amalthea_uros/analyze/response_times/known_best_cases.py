@@ -17,9 +17,9 @@ known places, where O. Redell and M. Sanfridson, ECRTS 2002, count only those th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from math import lcm
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.stimuli import Periodic

@@ -10,9 +10,9 @@ that start; the bounds of response times show which ones, so that the tighter bo
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from math import lcm
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.timing.activation.releases import known_releases

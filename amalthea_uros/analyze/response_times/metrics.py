@@ -12,7 +12,6 @@ means of ever longer runs.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from operator import mul
 from typing import TYPE_CHECKING, TypeAlias
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from amalthea_uros._internal.lazy_mapping import LazyMapping
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times import schedule
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule
 from amalthea_uros.analyze.response_times.solution import Solution

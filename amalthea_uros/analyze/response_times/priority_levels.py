@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times import edf, fixed_priority, non_preemptive, round_robin
 from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.busy_window import Interference

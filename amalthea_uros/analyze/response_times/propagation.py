@@ -8,8 +8,8 @@ point is found if there is one.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times.constant_schedule import constant_responses
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_best_cases import raised

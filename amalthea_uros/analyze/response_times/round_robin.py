@@ -11,9 +11,9 @@ turns. Neither is it whether a slice that was preempted starts anew, so that eac
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, of_completions, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS

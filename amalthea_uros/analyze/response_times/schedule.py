@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
 from math import lcm
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.kernel import Whole, dispatch
 from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand

@@ -17,8 +17,8 @@ there and nothing keeps a job of higher priority off. All times are multiples of
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.core import in_picoseconds
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.software import Preemption, Task

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.timing.basics.time_base import min_time

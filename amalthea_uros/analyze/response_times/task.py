@@ -6,10 +6,10 @@ real-time guarantees", RTSS 2003; R. I. Davis and A. Burns, "Hierarchical fixed 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import EventModel, rescaled
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult, RequirementResult

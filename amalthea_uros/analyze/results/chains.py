@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.processes import bound_text
 from amalthea_uros.executors.results import Hop

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, read_bytes, read_text, write_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.compare.calibration.agent_times import calibrated_agent_times
 from amalthea_uros.compare.calibration.execution_times import calibrated_execution_times

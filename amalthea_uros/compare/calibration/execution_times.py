@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
 from amalthea_uros.compare.calibration.samples import Measured, Samples, samples_of, without_others
 from amalthea_uros.compare.calibration.stated_overheads import stated_overhead

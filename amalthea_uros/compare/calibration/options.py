@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import InvalidArgumentError
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.measure.series import Measurement, Series, TimeStatistics, shifted, statistics_of
 from amalthea_uros.units import NANOSECOND, Time
 

@@ -7,9 +7,9 @@ wait until its message is on the wire, or until it is acknowledged: that is net 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.wording import OTHER_PARTS
 from amalthea_uros.errors import UnknownError

@@ -6,9 +6,9 @@ A quantity may be the difference of two columns with time stamps: `--column "rep
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import Final
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.measure.series import WHOLE_TIME
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND, Time

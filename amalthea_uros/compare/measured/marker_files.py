@@ -6,13 +6,13 @@ Executor_Task: {start: 0x18000001, end: 0x18000002, kind: process, baseline: Emp
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from amalthea_uros._internal.files import FileError, read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.compare.measured.signals import Signals, Value
 from amalthea_uros.diagnostics import Finding, Location, Severity

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.compare.measured.adjusted import net, with_period
 from amalthea_uros.compare.measured.columns import TableColumn, ValidRows
 from amalthea_uros.compare.measured.digests import digest_of

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.compare.measured.columns import UNITS, USUAL_ROWS, TableColumn, ValidRows, unit_of
 from amalthea_uros.compare.measured.records import Record

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from decimal import Decimal
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.compare.measured.columns import LARGEST, TableColumn, ValidRows
 from amalthea_uros.compare.measured.records import Record, read_records
 from amalthea_uros.compare.measured.table_layout import HeaderColumns, TableLayout

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from amalthea_uros._internal.csv_cells import original_text
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.compare.measured.columns import LARGEST, UNITS
 from amalthea_uros.compare.measured.records import Record, read_records
 from amalthea_uros.compare.measured.table_layout import TimesColumn

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.trace.ctf.ros2_objects import RosSubscription
 from amalthea_uros.units import NANOSECOND, SECOND, Frequency, Time
 from amalthea_uros.uros.application.callbacks import interval_of_rate

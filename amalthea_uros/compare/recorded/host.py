@@ -7,10 +7,10 @@ same thread calls: these are taken as one executor, as nodes are added to one in
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal.graphs import reached
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.measured.events import measured_by
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError

@@ -10,7 +10,6 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from multiprocessing import active_children, get_context
@@ -18,6 +17,7 @@ from typing import Any, TypeAlias
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros._internal.own_processes import can_start_safely, safe_start
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._version import __version__
 from amalthea_uros.design.campaign.run import CampaignRun, Job, RunOutcome
 from amalthea_uros.errors import AmurosError, InvalidArgumentError

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from io import BytesIO
 from typing import Any, TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep, count_variants, variants

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantResults, compact_bytes, origin_from
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.origin import ChangeOrigin

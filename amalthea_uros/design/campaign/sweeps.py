@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.impact import ComparedFigure, FigureUnit, figures
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import max_growth

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, Change
 from amalthea_uros.design.changes.key import UNSET, Configuration, Key

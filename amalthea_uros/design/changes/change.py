@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from math import prod
 from random import Random
 from typing import NamedTuple, TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import FREQUENCY, TIME, parse
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Collection, Configuration, Key, duration
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import listed

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from typing import Protocol
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.apply import Difference, apply
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.key import (
     ISR_ALLOCATIONS,
     OPERATING_SYSTEMS,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.description.keys import DescriptionKey, short_name
 from amalthea_uros.spec.written import Written

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from amalthea_uros._internal.paths import TEXT
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.keys import DescriptionKey, Holder, matching, short_name
 from amalthea_uros.design.description.places import Assignment

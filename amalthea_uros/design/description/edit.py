@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
 
 from amalthea_uros._internal.paths import TEXT
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system
 from amalthea_uros.design.description import text_edits

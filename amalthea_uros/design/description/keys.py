@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.description.text_edits import Path, has_list
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.loops import LoopSection

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.description.text_edits import Path, Value
 from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer
 from amalthea_uros.spec.description import Description

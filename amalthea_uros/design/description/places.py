@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.owners import Owner, OwnerKind, StatedTime, executors, owners
 from amalthea_uros.design.description.text_edits import Path, Value

@@ -7,11 +7,12 @@ own, and a merge key is a key.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, TypeAlias
 
 import yaml
+
+from amalthea_uros._internal.records import dataclass, field
 
 MERGE = "<<"
 

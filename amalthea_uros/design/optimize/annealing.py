@@ -9,10 +9,10 @@ that miss limits are compared by the time by which they miss them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from math import exp
 from random import Random
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.optimize.judged import BATCH, Judged
 from amalthea_uros.design.optimize.problem import DesignEvaluation, Feasibility, Problem, SearchResult

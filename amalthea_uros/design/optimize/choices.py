@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.apply import apply, check_key, describe
 from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import Configuration

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.results.analysis import Analysis, Judged
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.system import analyze_system

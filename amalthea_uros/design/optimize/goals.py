@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.changes.change import split_target

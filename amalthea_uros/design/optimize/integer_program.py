@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from importlib.metadata import version
 from itertools import pairwise
 from math import lcm
 from typing import Any
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.optimize.partition import Assignment, Partition
 
 #: Limit of CP-SAT's own measure of work, which does not depend on the computer.

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
 from operator import le
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.design.optimize.problem import Conclusion, DesignEvaluation, Evaluator, Feasibility, Problem, SearchResult
 from amalthea_uros.design.optimize.space import Candidate
 

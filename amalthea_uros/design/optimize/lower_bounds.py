@@ -10,8 +10,8 @@ exceed the deadline.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.perf.system import System

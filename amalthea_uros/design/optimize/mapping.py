@@ -9,10 +9,10 @@ only in their names are used in the order of their names.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.design.optimize.integer_program import solve_program
 from amalthea_uros.design.optimize.judged import Judged
 from amalthea_uros.design.optimize.partition import Assignment, Partition

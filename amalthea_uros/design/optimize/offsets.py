@@ -8,11 +8,11 @@ prod(T) / lcm(T) of them differ (J. Goossens, "Scheduling of offset free systems
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from math import gcd, prod
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration

@@ -6,8 +6,8 @@ import pickle
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.campaign.campaign import execute
 from amalthea_uros.design.campaign.executors import Executor, executor_for, serial
 from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, compact_bytes

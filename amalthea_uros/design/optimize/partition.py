@@ -7,10 +7,10 @@ because another one is taken away, so that each part of a set that fits does, to
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import permutations, product
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.response_times.critical_instant import certain_response
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system

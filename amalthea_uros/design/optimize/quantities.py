@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.activities import called_runnables
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import counters, known_releases, nominal_period

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations, permutations, product
 from math import comb, factorial, prod
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
 
 #: The changed values, ordered by their targets, without those that are as they were: equal designs are equal candidates.

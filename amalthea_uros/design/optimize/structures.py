@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
 from itertools import permutations
 from math import prod
 
+from amalthea_uros._internal.records import dataclass, fields
 from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.description.edit import edit_description, is_structural
 from amalthea_uros.design.description.origin import DescriptionOrigin

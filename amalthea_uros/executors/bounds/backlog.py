@@ -24,8 +24,8 @@ messages were unread than counted, and this time was not longer either. Nothing 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import received, variation
 from amalthea_uros.executors.semantics.suspension import acknowledgements, heartbeats, parts

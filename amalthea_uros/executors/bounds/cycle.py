@@ -23,9 +23,9 @@ A wait answers the heartbeats that are unread, whose number depends on the cycle
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import (
     acknowledged,

@@ -19,8 +19,8 @@ equations, as for event models in general (K. Richter 2005), and in docs/proofs/
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import Arriving, acknowledged, times_out
 from amalthea_uros.executors.bounds.cycle import Cycle

@@ -24,8 +24,8 @@ can write an answer, and heartbeats as long as the timeout lasts. If one of thes
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import DUE, Arriving, acknowledged, has_unacknowledged, publications
 from amalthea_uros.executors.bounds.cycle import Cycle

@@ -21,9 +21,9 @@ it earlier.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import protocol_overhead
 from amalthea_uros.executors.bounds.cycle import Cycle

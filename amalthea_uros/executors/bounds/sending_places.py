@@ -6,8 +6,7 @@ callback or process can call that callback, too, and triggers can be repeated, o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call, Trigger
 from amalthea_uros.perf.executors import Handle, Publication

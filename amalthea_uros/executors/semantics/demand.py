@@ -7,8 +7,8 @@ much of it comes before the wait is not known, so it counts wherever a part of i
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Activity, Call
 from amalthea_uros.perf.executors import Executor, Handle

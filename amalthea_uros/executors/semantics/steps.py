@@ -7,8 +7,8 @@ knows it: then each handle has one or two steps, in the order of the executor, w
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.executors.semantics.readiness import messages, shares_session
 from amalthea_uros.perf.activities import (
     Activity,

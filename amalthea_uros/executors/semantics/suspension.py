@@ -22,8 +22,8 @@ So it answers those unread, one more heartbeat, and one message.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.executors.semantics.loops import longest_wait
 from amalthea_uros.executors.semantics.readiness import messages, other_threads
 from amalthea_uros.perf.activities import Trigger, walk

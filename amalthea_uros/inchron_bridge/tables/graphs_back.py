@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import product
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.tables.chains import BARRIER, TRACE_EVENT

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.values import time_of

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import sys
 from contextvars import ContextVar
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import IO
+
+from amalthea_uros._internal.records import dataclass
 
 
 class Colours(StrEnum):

@@ -6,10 +6,10 @@ The modules in `documents` build it from results, and do not know the writers.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 
 #: Longer tables are folded after so many rows.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.results import (
     Agreement,
     Comparison,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.metamodel.versions import spelled
 from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
 from amalthea_uros.report.wording.cells import shortened

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.results.analysis import Judged
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.findings.grouping import names_in

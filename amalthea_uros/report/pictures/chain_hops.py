@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.results.explanations import ChainExplanation, ProcessHop
 from amalthea_uros.report.pictures.axes import HEIGHT, TimeAxis, draw_grid, draw_time_axis
 from amalthea_uros.report.pictures.job_rows import arrows_at, draw_activations

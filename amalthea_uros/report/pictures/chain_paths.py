@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.report.pictures.axes import TimeAxis
 from amalthea_uros.report.pictures.page import ARROW_END
 from amalthea_uros.report.pictures.svg import (

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.report.pictures.axes import TimeAxis, draw_time_axis
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, Entry, nothing, picture_of, swatch
 from amalthea_uros.report.pictures.svg import (

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from itertools import takewhile
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
 from amalthea_uros.report.pictures.jobs import ON_CORE, CoreRows, Job, ProcessRow, RunnableSpan, State, StateSpan

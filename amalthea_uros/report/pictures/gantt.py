@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.report.pictures.axes import (
     HEIGHT,
     TimeAxis,

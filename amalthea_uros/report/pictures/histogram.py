@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, floor
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.axes import HEIGHT, CountAxis, TimeAxis, draw_count_axis, draw_time_axis, width_of_counts
 from amalthea_uros.report.pictures.page import MARGIN, TOP, WIDTH, Entry, picture_of, swatch

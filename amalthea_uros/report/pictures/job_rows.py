@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.report.pictures.axes import TimeAxis
 from amalthea_uros.report.pictures.jobs import Job, ProcessRow, RunnableSpan, State, StateSpan
 from amalthea_uros.report.pictures.page import PALETTE, WIDTH, state_look

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.units import Time
 
 

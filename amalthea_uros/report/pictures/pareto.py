@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.axes import nice_steps

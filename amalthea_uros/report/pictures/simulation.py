@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System

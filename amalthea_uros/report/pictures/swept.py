@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.pictures.axes import multiples, nice_step, unit_of

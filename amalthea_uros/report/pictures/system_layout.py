@@ -11,10 +11,10 @@ hierarchical system structures", IEEE Transactions on Systems, Man, and Cybernet
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import networkx as nx
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.report.pictures.svg import SMALL_SIZE, text_width
 
 #: Pixels: of a box, between boxes, between the tracks and lines.

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.software import Isr, Process

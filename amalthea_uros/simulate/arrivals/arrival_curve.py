@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.stimuli import ArrivalCurve
 from amalthea_uros.simulate.arrivals.occurrences import LONGEST, OccurrenceBlock, OccurrenceBlocks, block_size

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.simulate.kernel.layout import RESPONSE, Observation
 from amalthea_uros.simulate.metrics.distributions import MetricDistributions
 from amalthea_uros.simulate.observations import ChainObservation, MetricObservation, RouteObservation

@@ -6,7 +6,6 @@ the first value, which are small.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import sqrt
 
@@ -14,6 +13,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.exact_sums import sums, sums_of_squares
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.simulate.observations import MetricObservation, ObservedOccurrence, TimeHistogram
 
 #: There are never more bins.

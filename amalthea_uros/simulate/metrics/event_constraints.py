@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.constraints import (

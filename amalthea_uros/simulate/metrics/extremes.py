@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import NamedTuple
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of
 

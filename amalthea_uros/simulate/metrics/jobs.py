@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.simulate.metrics.distributions import MetricDistributions
 from amalthea_uros.simulate.observations import WITH_HISTOGRAM, CountObservation, MetricObservation
 from amalthea_uros.timing.basics.quantities import JobMetric

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.timing.observed.chain_latencies import SAME
 from amalthea_uros.timing.observed.job_times import BETWEEN, OWN, own_times, times_between

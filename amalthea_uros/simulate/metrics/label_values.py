@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import limits_of
 from amalthea_uros.perf.activities import Communication

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.judge.limits import EventConstraint
 from amalthea_uros.perf.constraints import (
     ChainSynchronization,

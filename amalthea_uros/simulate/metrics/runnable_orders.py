@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import takewhile
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import without_number
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.network import Wire
 from amalthea_uros.perf.software import Isr
 from amalthea_uros.perf.system import System

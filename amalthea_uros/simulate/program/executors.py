@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
 from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of, why_unknown

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.executors.semantics.losses import losses_text
 from amalthea_uros.executors.semantics.suspension import parts

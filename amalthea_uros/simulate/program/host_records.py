@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import HandleKind

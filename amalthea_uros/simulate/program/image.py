@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.simulate.kernel.layout import HEAD, OPERATION_SIZE
 
 

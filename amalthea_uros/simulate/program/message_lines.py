@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.network import Span
 from amalthea_uros.simulate.kernel import layout

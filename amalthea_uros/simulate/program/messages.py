@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.executors.semantics.suspension import parts

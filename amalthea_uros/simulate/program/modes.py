@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.conditions import ChannelFillIs, Comparison, Condition, ModeLabelsAre, ModeValueIs, Relation, Undecided
 from amalthea_uros.perf.software import ModeLabel

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import ClearEvent, ServerCall, SetEvent, WaitEvent, Waiting, walk
 from amalthea_uros.perf.distributions import Distribution, Statistics

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Policy

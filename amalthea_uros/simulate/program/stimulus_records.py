@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 from amalthea_uros._internal.limits import SIMULATED_OCCURRENCES
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.distributions import Uniform

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TypeAlias, cast
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.limits import WAITING_NUMBERS
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.simulate.kernel import layout, machine_code
 from amalthea_uros.simulate.kernel.layout import Memory
 from amalthea_uros.simulate.kernel.loop import run_kernel

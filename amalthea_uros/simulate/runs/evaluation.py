@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.judge.limits import Deadline, deadline_of
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.software import Isr

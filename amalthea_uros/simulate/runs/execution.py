@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.layout import Observation

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.limits import Stated
 from amalthea_uros.perf.constraints import DataAgeConstraint, LatencyConstraint, OrderConstraint, Requirement

@@ -6,13 +6,13 @@ How many values are taken at a time does not change them. In the modes that do n
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor, isfinite
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import Bounds, Distribution, Gauss, highest, lowest
 from amalthea_uros.simulate.options import SimulationMode

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf, isfinite, sqrt
 
 import numpy as np
 
 from amalthea_uros._internal.arrays import Numbers, Words
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.distributions import (
     Beta,

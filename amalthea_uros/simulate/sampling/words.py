@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from hashlib import blake2b
 from itertools import count, pairwise, takewhile
@@ -13,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from amalthea_uros._internal.arrays import Floats, Words
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 
 

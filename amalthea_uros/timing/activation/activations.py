@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import chain, groupby
 from operator import attrgetter
 from typing import NamedTuple, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.events import CustomEvent, Event, ModeLabelEvent, RunnableChange, RunnableEvent

@@ -14,11 +14,11 @@ ones. So the number of jobs in a sequence that take one is bounded as events of 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
 from math import prod
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Activity, Call, Trigger, transformed, walk
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.perf.named import Named
 

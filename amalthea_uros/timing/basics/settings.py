@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.units import Frequency, Time
 

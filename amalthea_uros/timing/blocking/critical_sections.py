@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from amalthea_uros._internal.graphs import circles
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.activities import Group, SemaphoreAccess, SemaphoreOperation, Waiting
 from amalthea_uros.perf.os import SemaphoreKind
 from amalthea_uros.perf.software import Process

@@ -11,10 +11,10 @@ while a job holds a semaphore whose ceiling keeps the other one off, or in a non
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from functools import reduce
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     Activity,

@@ -8,9 +8,9 @@ is ignored and reported.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from itertools import pairwise
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import ChainReference, EventChain, EventSet, Parallel, Segment
 from amalthea_uros.perf.events import Sequence as InSequence

@@ -6,12 +6,12 @@ Chains, paths and rules all use these links.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 from itertools import chain
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.activities import (
     AccessKind,
     Call,

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise, product
 
 import networkx as nx
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.events import (

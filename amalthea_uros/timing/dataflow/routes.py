@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import pairwise, product
 from math import prod
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import Event, EventChain
 from amalthea_uros.timing.dataflow.chains import MAX_ROUTES, Unfolded, sequences, unfold

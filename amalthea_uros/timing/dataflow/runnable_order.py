@@ -8,8 +8,8 @@ belong together, then the second ones, and so on. This needs processes that are 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Call, Trigger
 from amalthea_uros.perf.constraints import OrderConstraint, Ordering

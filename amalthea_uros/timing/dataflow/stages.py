@@ -7,9 +7,9 @@ one. So these are two stages, although they belong to the same process.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.activities import Communication, Group
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Counter

@@ -7,9 +7,9 @@ terahertz, a tick takes a picosecond. Without cores, each type that a demand nam
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import Execute, WaitEvent, Waiting
 from amalthea_uros.perf.hardware import Clock, Core, Hardware, Structure

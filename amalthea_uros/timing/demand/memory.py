@@ -9,10 +9,10 @@ not stated, the demand of the process is unknown.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, floor
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import AccessKind
 from amalthea_uros.perf.distributions import Distribution, highest, lowest

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, floor, inf
 
 from amalthea_uros._internal.graphs import bottom_up
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     AccessKind,

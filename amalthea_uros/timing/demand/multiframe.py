@@ -7,10 +7,10 @@ with different prescalers can fall on the same job, because their counters start
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.activities import Count
 from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.means import exact_sum

@@ -6,9 +6,9 @@ Runnables can be overhead, too, of the process that calls them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.activities import (
     AccessKind,
     Activity,

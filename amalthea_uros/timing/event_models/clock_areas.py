@@ -8,11 +8,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from bisect import bisect_left
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import count
 from math import ceil
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.stimuli import Clock, ClockFunction, ClockSteps, Curve
 from amalthea_uros.units import SECOND, Time

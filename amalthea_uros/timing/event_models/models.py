@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from bisect import bisect_right
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.units import Time
 
 #: Longer than any window: the distance to events that never occur.

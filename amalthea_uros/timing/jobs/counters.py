@@ -9,12 +9,12 @@ With a prescaler below 1, a counter has no meaning: it is unknown which times ta
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from math import gcd
 from typing import TypeAlias
 
 from amalthea_uros._internal.graphs import bottom_up
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.activities import (
     WITH_PARTS,

@@ -19,11 +19,11 @@ What needs a stimulus before the first one, or a response after the end of the r
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 
 if TYPE_CHECKING:

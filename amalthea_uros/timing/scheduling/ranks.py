@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import partial
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Policy, Scheduler

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
 from math import isfinite
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.files import FileError, read_bytes
 from amalthea_uros._internal.limits import MODEL_SIZE
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.arrays import Numbers
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.files import TracePlace, TraceProblems
 

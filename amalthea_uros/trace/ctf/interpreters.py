@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 from typing import ClassVar, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.trace.ctf.streams import CtfEvent
 from amalthea_uros.trace.files import TraceProblems
 from amalthea_uros.trace.reading import EventRows

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.trace.ctf.tsdl import MetadataBlock, parse
 from amalthea_uros.trace.ctf.types import FieldType, IntegerType, StructType, VariantType
 from amalthea_uros.trace.files import UnreadableError

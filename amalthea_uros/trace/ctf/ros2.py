@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import ClassVar
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.ctf.interpreters import Handler, Interpreter, LinuxThread
 from amalthea_uros.trace.ctf.ros2_objects import RosCallback, RosObjects, RosSubscription, address_of

@@ -9,10 +9,10 @@ from __future__ import annotations
 from array import array
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import ClassVar, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.trace.ctf.streams import CtfEvent
 
 _PERIOD_UNITS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.trace.ctf.types import (
     ArrayType,
     EnumerationType,

@@ -8,9 +8,9 @@ after a loss of events, on a core goes on with a job of which the start is unkno
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.files import TracePlace, TraceProblems
 from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable

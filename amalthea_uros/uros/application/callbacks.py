@@ -7,10 +7,10 @@ their messages are not described.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 from amalthea_uros._internal.ports import parameter_services
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.software import Channel
 from amalthea_uros.spec.application import (

@@ -8,9 +8,9 @@ rmw_subscription.c, rmw_service.c, rmw_client.c). What receives data asks the ag
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from amalthea_uros._internal.ports import parameter_services
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from amalthea_uros._internal.ports import parameter_services
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware

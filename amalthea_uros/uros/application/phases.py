@@ -7,8 +7,8 @@ are due for the first time.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.stimuli import Arrivals, Counter
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import Time, time_text

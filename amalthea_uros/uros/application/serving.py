@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.application import CallbackSection, NodeSection
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import ExecutorSection

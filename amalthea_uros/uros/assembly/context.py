@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Call, Trigger
 from amalthea_uros.perf.executors import Executor

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import (

@@ -12,8 +12,8 @@ that is called only every n-th time.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation, Trigger
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable

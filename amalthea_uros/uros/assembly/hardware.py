@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.hardware import (

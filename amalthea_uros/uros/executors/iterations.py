@@ -9,9 +9,9 @@ most: then the message handles exclude each other.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, takewhile
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.executors.semantics.loops import is_paced
 from amalthea_uros.executors.semantics.readiness import can_defer, timers, waits_for_acknowledgements
 from amalthea_uros.perf.activities import Activity, Call, Chance, ProbabilitySwitch

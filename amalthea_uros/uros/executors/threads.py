@@ -8,8 +8,8 @@ follow the last one.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import LoopKind, ThreadLoop, ThreadPlace
 from amalthea_uros.spec.executors import ExecutorSection

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import cache
 from importlib import resources
 from typing import Any, Self
 
+from amalthea_uros._internal.records import dataclass, fields
 from amalthea_uros._internal.resources import parsed_yaml
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.named import Brief

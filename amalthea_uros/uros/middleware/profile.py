@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.executors import WaitBehaviour
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.network import Direction, Recovery

@@ -12,10 +12,10 @@ in activations of its own task between two messages, too, it does not publish in
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity, Demand, Execute, SchedulePoint
 from amalthea_uros.perf.distributions import Boundaries, Constant

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.network import Direction, Losses
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.losses import LossesSection

@@ -9,9 +9,9 @@ processed the part, those of the controller when it has read it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.distributions import Uniform

@@ -8,8 +8,8 @@ and heartbeats is a process of its own in the model, as it triggers nothing. If 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, Trigger
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable

@@ -8,11 +8,11 @@ priority. Messages wait for the wire in any number.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain, count
 
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity, Demand, Execute, SchedulePoint, Trigger
 from amalthea_uros.perf.distributions import Boundaries, Constant, Sampling

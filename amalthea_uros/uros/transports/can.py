@@ -19,10 +19,10 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from math import lcm
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.network import Direction, WireKind
 from amalthea_uros.spec.transports import Can, CanFd

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.network import Direction, Span, WireKind
 from amalthea_uros.spec.transports import CustomTransport, Driver, LatencySection, NetworkSection, Serial, UsbCdc
 from amalthea_uros.units import NANOSECOND, SECOND, Time

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import ClassVar, TypeAlias
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.network import Direction, Span, WireKind
 from amalthea_uros.spec.transports import (
     AgentTime,

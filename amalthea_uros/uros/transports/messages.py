@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Wait
 from amalthea_uros.perf.system import System

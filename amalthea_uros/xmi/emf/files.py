@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from amalthea_uros._internal import files
 from amalthea_uros._internal.files import FileEncodingError, FileError, FileTooLargeError
 from amalthea_uros._internal.limits import ADVICE, MODEL_ELEMENTS, MODEL_SIZE
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
 

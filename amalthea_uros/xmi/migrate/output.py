@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
 from amalthea_uros._internal.files import is_directory, is_file, is_stream, not_writable, resolved
 from amalthea_uros._internal.paths import StrPath
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.xmi.emf.files import SUFFIX, ZIP_ENTRY, FileText, write_texts

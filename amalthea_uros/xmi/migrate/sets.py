@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote, unquote_plus
 from xml.sax.saxutils import unescape
 
 from amalthea_uros._internal.files import FileError, is_directory, is_file, resolved
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.model import Model

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.metamodel.source import SourceText
 from amalthea_uros.xmi.emf.files import FileText

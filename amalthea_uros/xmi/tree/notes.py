@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.xmi.tree.node import Node
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.parsers import expat
 
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import connect, disconnect

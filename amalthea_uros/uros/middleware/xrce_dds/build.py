@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from amalthea_uros._internal.ports import Port, known_ports
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.middleware.options import OptionRow, option_rows
 

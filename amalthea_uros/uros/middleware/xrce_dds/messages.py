@@ -8,9 +8,9 @@ of which is a message with a header.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import repeat
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.units import DataSize

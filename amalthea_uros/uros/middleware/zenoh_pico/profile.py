@@ -8,9 +8,9 @@ lengths are the longest ones. A message that does not fit into a batch is cut in
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import repeat
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.spec.application import Application
 from amalthea_uros.units import MILLISECOND, DataSize, Time

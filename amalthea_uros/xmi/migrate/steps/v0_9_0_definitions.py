@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.xmi.migrate.steps.tools import add_property, content_of, names_of
 from amalthea_uros.xmi.tree.model_set import ModelSet
 from amalthea_uros.xmi.tree.node import Node, remove_all
