@@ -14,7 +14,7 @@ from amalthea_uros.inchron.write import project_text
 from amalthea_uros.inchron_bridge.build import build_project
 from amalthea_uros.inchron_bridge.extract import extract_project
 from amalthea_uros.perf import events as perf
-from amalthea_uros.perf.constraints import ChainSynchronization, Constraints
+from amalthea_uros.perf.constraints import ChainSynchronization, Constraints, LatencyConstraint
 from amalthea_uros.perf.software import Label, Software
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.analyze import analyze_files
@@ -217,3 +217,48 @@ def test_a_limit_of_a_chain_that_is_not_understood_is_not_met(project):
 def test_graphs_that_mean_nothing_certain_stay_unknown(project, nodes):
     opened = open_system(project(start="s_D", **nodes))
     assert [(chain.name, chain.stimulus) for chain in opened.system.events.chains] == [("G", None)]
+
+
+@pytest.fixture
+def begun_by_several():
+    """A chain that begins with a and b, each of which has to occur, with a limit, as a project."""
+    both = perf.EventSet(name="both", events=("a", "b"))
+    parts = perf.Sequence((seg("both", "c"), seg("c", "d")))
+    chain = perf.EventChain(name="C", stimulus="both", response="d", items=parts)
+    limit = LatencyConstraint(name="L", chain="C", maximum=5 * 10**9)
+    system = replace(system_of(chain, sets=(both,)), constraints=Constraints(constraints=(limit,)))
+    return system, build_project(system).model
+
+
+def test_a_set_at_the_start_becomes_a_graph_for_each_event(begun_by_several):
+    system, model = begun_by_several
+    lines = {graph.name: [node["first"]["traceEvent"].owner.name for node in graph["nodes"]] for graph in model["eventChains"]}
+    assert lines == {"C": ["c", "a", "d"], "C_2": ["c", "b", "d"]}
+    limits = {each.name: (each["eventChain"].name, each["interval"]["upperLimit"]["value"]) for each in model["requirements"]}
+    assert limits == {"L": ("C", 5), "L_2": ("C_2", 5)}
+    again = extract_project(parse_project(Path(), project_text(model, NAMESPACE))).system
+    assert (again.events, again.constraints) == (system.events, system.constraints)
+
+
+def test_a_limit_that_somebody_changed_is_one_of_its_graph_alone(begun_by_several):
+    _, model = begun_by_several
+    model["requirements"][1]["interval"]["upperLimit"]["value"] = 4
+    found = extract_project(parse_project(Path(), project_text(model, NAMESPACE))).system
+    limits = {each.chain: each.maximum for each in found.constraints.constraints}
+    assert limits == {"C_alone": 5 * 10**9, "C_2_alone": 4 * 10**9}
+    steps = {chain.name: sequences(unfold(chain, found)[0]) for chain in found.events.chains}
+    assert steps == {"C": [("a", "c", "d"), ("b", "c", "d")], "C_alone": [("a", "c", "d")], "C_2_alone": [("b", "c", "d")]}
+
+
+def test_a_graph_that_somebody_changed_is_a_chain_of_its_own(begun_by_several):
+    _, model = begun_by_several
+    second = model["eventChains"][1]
+    second["nodes"][0]["first"]["traceEvent"] = next(
+        each["traceEvents"][1] for each in model.walk() if each.kind == "memory.DataObject" and each.name == "e"
+    )
+    found = extract_project(parse_project(Path(), project_text(model, NAMESPACE))).system
+    assert {chain.name: sequences(unfold(chain, found)[0]) for chain in found.events.chains} == {
+        "C": [("a", "c", "d")],
+        "C_2": [("b", "e", "d")],
+    }
+    assert {each.chain for each in found.constraints.constraints} == {"C", "C_2"}

@@ -26,6 +26,7 @@ class Exporting:
     entry : number of the next entry of a call graph
     condition : number of the next condition
     holder : name of the object whose references are being resolved
+    graphs : of each event chain; several if it begins with several events
     """
 
     def __init__(
@@ -41,6 +42,7 @@ class Exporting:
         self.entry = 0
         self.condition = 0
         self.holder = ""
+        self.graphs: dict[str, list[ProjectObject]] = {}
         self._objects: dict[tuple[str, str], ProjectObject] = {}
         self._lost: dict[tuple[str, str, str], list[Any]] = {}
         self._errors: list[Finding] = []

@@ -48,14 +48,19 @@ def require_sealed(item: ProjectObject) -> None:
 
 def _sealed(item: ProjectObject) -> Iterable[ProjectObject]:
     """The objects that a seal covers: the object itself; of a model, its hardware."""
-    span = noted(item).get("span")
-    if type(span) is int and item.owner is not None:
-        entries = next((parts for parts in _lists(item.owner) if item in parts), [item])
-        place = entries.index(item)
-        return entries[place : place + span]
     if item.kind != "Model":
-        return (item,)
+        return objects_beside(item)
     return (*item["clocks"], *item["cpus"], *item["memories"], *item["interconnects"])
+
+
+def objects_beside(item: ProjectObject) -> list[ProjectObject]:
+    """The object, with those after it that its comment speaks for, too."""
+    span = noted(item).get("span")
+    if type(span) is not int or item.owner is None:
+        return [item]
+    entries = next((parts for parts in _lists(item.owner) if item in parts), [item])
+    place = entries.index(item)
+    return entries[place : place + span]
 
 
 def _lists(item: ProjectObject) -> Iterable[list[ProjectObject]]:
@@ -71,7 +76,7 @@ def _digest(items: Iterable[ProjectObject]) -> str:
 
 
 def _words(item: ProjectObject) -> Iterable[Any]:
-    """The content as a sequence of texts that does not depend on ids; references are the classes and names of their targets."""
+    """The content as a sequence of texts that does not depend on ids; references are what their targets are and what these are of."""
     yield f"({item.kind}"
     for name, feature in features(item.kind).items():
         if name in _OTHERS or name not in item.values:
@@ -83,7 +88,13 @@ def _words(item: ProjectObject) -> Iterable[Any]:
                 yield from _words(part)
         elif feature.kind is FeatureKind.REFERENCE:
             targets = value if feature.many else (value,)
-            yield f"{name}>{sorted(f'{target.kind} {target.name}' for target in targets)}" if targets else ""
+            yield f"{name}>{sorted(map(_target, targets))}" if targets else ""
         elif value != default_of(feature):
             yield f"{name}={value!r}"
     yield ")"
+
+
+def _target(item: ProjectObject) -> str:
+    # Trace events of different objects have the same names.
+    owner = f"{item.owner.kind} {item.owner.name}" if item.owner is not None else ""
+    return f"{owner}/{item.kind} {item.name}"

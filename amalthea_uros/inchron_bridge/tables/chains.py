@@ -27,6 +27,8 @@ TRACE_EVENT, BARRIER = "EventGraphTraceEvent", "EventGraphSynchronizationBarrier
 CHAIN = "chain"
 #: The key in the comment of a graph that only serves a limit, whose comment says what is meant.
 SYNCHRONIZED = "synchronized"
+#: The key in the comment of a graph, or of a limit of it, that belongs to the ones before it: they stand for one chain together.
+BESIDE = "beside"
 
 
 def trace_event(event: perf.Event | None, context: Exporting) -> tuple[ProjectObject, ProjectObject | None]:
@@ -59,19 +61,52 @@ def trace_event(event: perf.Event | None, context: Exporting) -> tuple[ProjectOb
 def build_chains(context: Exporting) -> None:
     """Make the graphs; chains that cannot be one are reported."""
     for chain in context.system.events.chains:
-        graph = ProjectObject("EventGraph", name=chain.name)
         try:
             events, left_out = unfold(chain, context.system)
-            builder = _ChainGraph(graph, context)
-            builder.build(events)
+            builders = [
+                _ChainGraph(f"{chain.name}_{number + 1}" if number else chain.name, context)
+                for number, _ in enumerate(ways_in(events))
+            ]
+            for builder, way in zip(builders, ways_in(events), strict=True):
+                builder.build(way)
         except UnknownError as error:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
             continue
         if left_out:
             context.changed(chain, "a part with other ends than its chain", "with those of the chain")
-        if not builder.is_exact or events != plain_events(chain):
-            keep_whole(graph, CHAIN, chain)
-        context.model.add("eventChains", context.register("EventGraph", chain.name, graph))
+        graphs = [builder.graph for builder in builders]
+        if not all(builder.is_exact for builder in builders) or events != plain_events(chain):
+            keep_whole(graphs[0], CHAIN, chain)
+        if len(graphs) > 1:
+            context.changed(chain, "an event chain that begins with several events", "as one graph for each of them")
+            join_items(graphs)
+        context.graphs[chain.name] = graphs
+        context.register("EventGraph", chain.name, graphs[0])
+        for graph in graphs:
+            context.model.add("eventChains", graph)
+
+
+def join_items(items: list[ProjectObject]) -> None:
+    """Note in the comment of the first of some objects in a row that they belong together."""
+    note(items[0], span=len(items))
+    for item in items[1:]:
+        note(item, **{BESIDE: items[0].name})
+
+
+def ways_in(events: Unfolded) -> list[Unfolded]:
+    """A chain for each event that it begins with, as a graph begins with one; it is complete when all of these are.
+
+    Raises
+    ------
+    UnknownError : one of several events is enough to begin.
+    """
+    first, *rest = events
+    if isinstance(first, str):
+        return [events]
+    if first.needed < len(first.branches):
+        raise UnknownError("it begins with one of several events, and a graph begins with one")
+    # A branch without events begins with what follows.
+    return [way for branch in dict.fromkeys(first.branches) for way in ways_in((*branch, *rest))]
 
 
 def plain_events(chain: perf.EventChain) -> tuple[str | None, ...]:
@@ -95,8 +130,8 @@ class _ChainGraph:
     is_exact : whether the trace events say everything of the events
     """
 
-    def __init__(self, graph: ProjectObject, context: Exporting) -> None:
-        self.graph = graph
+    def __init__(self, name: str, context: Exporting) -> None:
+        self.graph = ProjectObject("EventGraph", name=name)
         self.context = context
         self.names: set[str] = set()
         self.inner: list[tuple[ProjectObject, str]] = []
@@ -105,8 +140,8 @@ class _ChainGraph:
     def build(self, events: Unfolded) -> None:
         """Make the nodes: first those inside, then the stimulus, then the response, as the importer of INCHRON orders them."""
         first, *inside = events
-        if isinstance(first, Fork):
-            raise UnknownError("it begins with one of several events, and a graph begins with one")
+        if isinstance(first, Fork) or not inside:
+            raise UnknownError("it begins with several events, or ends with the one that it begins with")
         start, last = self.event(first), inside.pop()
         before = self.line(tuple(inside), start)
         ends = {name: link(self.event(name), self.line(branch, before)) for branch, name in joint_ends(last)}
@@ -180,8 +215,9 @@ def build_synchronized(limit: ChainSynchronization, context: Exporting) -> Proje
     lines = [unfold(chain, context.system)[0] for chain in chains if chain is not None]
     if limit.end is not ChainEnd.RESPONSE or len({line[0] for line in lines}) != 1 or None in chains:
         raise UnknownError("its chains do not begin with the same event and end together")
-    graph = ProjectObject("EventGraph", name=f"{limit.name}_chains")
-    _ChainGraph(graph, context).build((lines[0][0], Fork(tuple(line[1:] for line in lines), len(lines))))
+    builder = _ChainGraph(f"{limit.name}_chains", context)
+    builder.build((lines[0][0], Fork(tuple(line[1:] for line in lines), len(lines))))
+    graph = builder.graph
     note(graph, **{SYNCHRONIZED: True})
     context.model.add("eventChains", graph)
     return graph

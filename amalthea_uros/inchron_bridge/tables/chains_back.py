@@ -11,7 +11,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
-from amalthea_uros.inchron_bridge.basics.seals import is_sealed
+from amalthea_uros.inchron_bridge.basics.seals import is_sealed, objects_beside
 from amalthea_uros.inchron_bridge.tables.chains import (
     CHAIN,
     LABEL_EVENTS,
@@ -36,6 +36,7 @@ class EventsReader:
     result : the chains
     chains : names of the chains of each graph
     routes : the steps of each graph that is read, rather than what its comment keeps
+    joined : graphs of which several are one chain, as it begins with several events
     """
 
     def __init__(self, context: Importing, model: ProjectObject) -> None:
@@ -46,6 +47,7 @@ class EventsReader:
         self.result: list[perf.EventChain] = []
         self.chains: dict[ProjectObject, tuple[str, ...]] = {}
         self.routes: dict[ProjectObject, tuple[GraphRoute, ...]] = {}
+        self.joined: set[ProjectObject] = set()
 
     def read(self) -> None:
         """Read all."""
@@ -54,7 +56,7 @@ class EventsReader:
             self.names.setdefault(_meaning(event), event.name)
         known = {event.name for event in self.events}
         for item in self.model["eventChains"]:
-            if SYNCHRONIZED in self.context.noted(item) and is_sealed(item):
+            if item in self.joined or SYNCHRONIZED in self.context.noted(item) and is_sealed(item):
                 continue
             made = self.chains_of(item)
             self.chains[item] = tuple(chain.name for chain in made)
@@ -115,8 +117,11 @@ class EventsReader:
         kept = self.context.whole(item, CHAIN, (perf.EventChain,))
         known = {event.name for event in self.events}
         if kept is not None and _events_of(kept) <= known:
-            with suppress(UnknownError):
-                self.routes[item] = tuple(routes_of(item).values())
+            several = objects_beside(item)
+            self.joined |= set(several if len(several) > 1 else ())
+            for each in several:
+                with suppress(UnknownError):
+                    self.routes[each] = tuple(routes_of(each).values())
             return [perf.EventChain(name=name, stimulus=kept.stimulus, response=kept.response, items=kept.items, origin=origin)]
         if item.kind != "EventGraph":
             return [perf.EventChain(name=name, origin=origin)]
@@ -147,6 +152,22 @@ class EventsReader:
         if name not in {chain.name for chain in self.result}:
             self.result.append(self.chain(name, steps, self.context.location(graph)))
         return name
+
+    def alone(self, graph: ProjectObject) -> tuple[str, GraphRoute]:
+        """The name of a chain, and the steps, of one of the graphs of a chain that begins with several events.
+
+        Raises
+        ------
+        UnknownError : it is not understood.
+        """
+        if len(self.routes.get(graph, ())) != 1:
+            raise UnknownError("its event chain is not understood")
+        name = self.context.name_of("EventGraph alone", graph)
+        if name is None:
+            name = self.context.name("EventGraph", graph, f"{graph.name}_alone")
+            self.context.share("EventGraph alone", graph, name)
+            self.result.append(self.chain(name, self.routes[graph][0], self.context.location(graph)))
+        return name, self.routes[graph][0]
 
     def chain(self, name: str, route: GraphRoute, origin: Any) -> perf.EventChain:
         """The chain of a route."""

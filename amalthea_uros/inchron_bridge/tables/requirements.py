@@ -10,7 +10,7 @@ from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import keep_whole
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time
-from amalthea_uros.inchron_bridge.tables.chains import build_synchronized, trace_event
+from amalthea_uros.inchron_bridge.tables.chains import build_synchronized, join_items, trace_event
 from amalthea_uros.perf import constraints as perf
 
 #: The key of a limit in the comment of the requirement that stands for it.
@@ -46,9 +46,13 @@ def build_requirements(context: Exporting) -> None:
             context.lost(limit, f"a {type(limit).__name__}", f"{reason}only amuros reads it, in a comment")
             made = ProjectObject("requirement.GroupOfRequirements", name=limit.name)
             made["evaluate"] = False
-        if not _is_plain(limit, made):
-            keep_whole(made, LIMIT, limit)
-        context.model.add("requirements", made)
+        several = made if isinstance(made, list) else [made]
+        if len(several) > 1 or not _is_plain(limit, several[0]):
+            keep_whole(several[0], LIMIT, limit)
+        if len(several) > 1:
+            join_items(several)
+        for each in several:
+            context.model.add("requirements", each)
 
 
 def _is_plain(limit: Any, made: ProjectObject) -> bool:
@@ -68,21 +72,25 @@ def _interval(lower: int | None, upper: int | None, context: Exporting, holder: 
     return made
 
 
-def _latency(limit: perf.LatencyConstraint, context: Exporting) -> ProjectObject:
-    graph = context.find("EventGraph", limit.chain)
-    if graph is None:
+def _latency(limit: perf.LatencyConstraint, context: Exporting) -> list[ProjectObject]:
+    """A requirement on each graph of the chain."""
+    graphs = context.graphs.get(limit.chain)
+    if graphs is None:
         raise UnknownError("there is no event chain for it")
     if limit.minimum is None and limit.maximum is None:
         raise UnknownError("it has neither a minimum nor a maximum")
-    return ProjectObject(
-        CHAIN_REQUIREMENT,
-        name=limit.name,
-        eventChain=graph,
-        start=[graph["initialNode"]["first"]],
-        end=[node["first"] for node in graph["terminalNodes"]],
-        interval=_interval(limit.minimum, limit.maximum, context, limit.name),
-        strategy="FirstLast" if limit.kind is perf.LatencyKind.AGE else "FirstFirst",
-    )
+    return [
+        ProjectObject(
+            CHAIN_REQUIREMENT,
+            name=f"{limit.name}_{number + 1}" if number else limit.name,
+            eventChain=graph,
+            start=[graph["initialNode"]["first"]],
+            end=[node["first"] for node in graph["terminalNodes"]],
+            interval=_interval(limit.minimum, limit.maximum, context, limit.name),
+            strategy="FirstLast" if limit.kind is perf.LatencyKind.AGE else "FirstFirst",
+        )
+        for number, graph in enumerate(graphs)
+    ]
 
 
 def _event(name: str, context: Exporting) -> ProjectObject:
@@ -169,7 +177,7 @@ def _requirement(requirement: perf.Requirement, context: Exporting) -> ProjectOb
     raise UnknownError(f"there is no requirement on the {limit.metric}")
 
 
-_BUILD: dict[type[Any], Callable[[Any, Exporting], ProjectObject]] = {
+_BUILD: dict[type[Any], Callable[[Any, Exporting], ProjectObject | list[ProjectObject]]] = {
     perf.LatencyConstraint: _latency,
     perf.DelayConstraint: _delay,
     perf.RepetitionConstraint: _repetition,

@@ -7,6 +7,7 @@ from typing import Any
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.seals import objects_beside
 from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time_of
 from amalthea_uros.inchron_bridge.tables.chains_back import EventsReader
 from amalthea_uros.inchron_bridge.tables.graphs_back import joined_steps
@@ -31,8 +32,15 @@ _METRICS = {kind: metric for metric, kind in OF_PROCESS.items()}
 def extract_constraints(context: Importing, model: ProjectObject, events: EventsReader) -> perf.Constraints:
     """All limits that are understood."""
     result: dict[str, list[Any]] = {field: [] for field in _FIELDS.values()}
+    covered: set[ProjectObject] = set()
     for item in model["requirements"]:
+        if item in covered:
+            continue
         kept = context.whole(item, LIMIT, tuple(_FIELDS), origin=context.location(item))
+        several = objects_beside(item) if kept is not None else []
+        if len(several) > 1 and not all(each["eventChain"] in events.joined for each in several):
+            kept = None  # The graphs are no longer one chain, so that each has a limit of its own.
+        covered |= set(several if kept is not None else ())
         limits = [kept] if kept is not None else _limits(item, context, events)
         for limit in limits:
             result[_FIELDS[type(limit)]].append(limit)
@@ -105,10 +113,15 @@ def _interval(item: ProjectObject) -> tuple[int | None, int | None]:
 def _chains(item: ProjectObject, events: EventsReader) -> list[str]:
     """The chains that a requirement is about: those of its graph, or a part of each; the graph may be one that is not understood."""
     graph, start, end = item["eventChain"], item["start"], item["end"]
-    if graph not in events.chains:
+    if graph not in events.chains and graph not in events.joined:
         raise UnknownError("its event chain is not understood")
     if item["instanceOffset"] or (item["orSemanticsStart"] and len(start) > 1) or (item["orSemanticsEnd"] and len(end) > 1):
         raise UnknownError("it compares several instances of its event chain, or is about one of several steps")
+    if graph in events.joined:
+        name, route = events.alone(graph)
+        if start != [route[0]] or set(end) != set(joined_steps(route)):
+            raise UnknownError("it is about a part of an event chain that begins with several events")
+        return [name]
     chains = events.chains[graph]
     if graph not in events.routes:
         return list(chains)
