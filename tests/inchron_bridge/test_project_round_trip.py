@@ -1,6 +1,7 @@
 """What is written to a project and read again is the same system; what somebody changed in between is not covered by comments."""
 
 import random
+import re
 from contextlib import suppress
 
 import pytest
@@ -129,3 +130,30 @@ def test_damaged_projects_end_with_findings(project):
         project.write_text(text[:place] + inserted + text[place + length :])
         with suppress(AmurosError):
             open_system(project)
+
+
+@pytest.mark.parametrize(
+    ("kind", "content"),
+    [
+        ("NetSlackTimeRequirement", 'process="{First}"><interval/><deadlineDelta/>'),
+        ("LoadRequirement", 'limit="0.99">'),
+        ("RtosFailureRequirement", 'enabledRtosFailures="IsrLost">'),
+        ("CallNestingRequirement", 'limit="99">'),
+        ("ResponseTimeRequirement", 'process="{First}" successIfOutsideOfInterval="true"><interval/>'),
+    ],
+)
+@pytest.mark.parametrize("group", ["", '<requirements xsi:type="requirement:GroupOfRequirements" intrinsicId="_g" name="g">'])
+def test_nothing_is_known_of_a_requirement_that_is_not_understood(project, kind, content, group):
+    text = project.read_text()
+    first = re.search(r'<schedulables xsi:type="model:Process" intrinsicId="(\S+)" name="First"', text)[1]
+    own = (
+        f'<requirements xsi:type="requirement:{kind}" intrinsicId="_q" name="own" {content.format(First=first)}</requirements>'
+    )
+    inserted = group + own + ("</requirements>" if group else "")
+    project.write_text(text.replace("<requirements ", f"{inserted}<requirements ", 1))
+    analyzed = analyze_files(project)
+    assert {each.name: str(each.verdict) for each in analyzed.analysis.requirements} == {
+        "own": "unknown",
+        "Second_response_time": "met",
+    }
+    assert [each.object for each in analyzed.findings if each.rule == "INC006"] == ["own"]

@@ -42,6 +42,11 @@ def note(item: ProjectObject, **content: Any) -> None:
         item["comment"] = _BEGIN + text
 
 
+def is_ours(item: ProjectObject) -> bool:
+    """Whether an object has a comment of ours, maybe a damaged one."""
+    return (item.values.get("comment") or "").startswith(_BEGIN)
+
+
 def noted(item: ProjectObject) -> dict[str, Any]:
     """The content of a comment of ours; empty for any other comment.
 
@@ -49,11 +54,10 @@ def noted(item: ProjectObject) -> dict[str, Any]:
     ------
     UnknownError : it began as one of ours, and is damaged.
     """
-    text = item.values.get("comment") or ""
-    if not text.startswith(_BEGIN):
+    if not is_ours(item):
         return {}
     try:
-        result = json.loads(text.removeprefix(_BEGIN))
+        result = json.loads(item["comment"].removeprefix(_BEGIN))
     except (ValueError, RecursionError) as error:
         raise UnknownError(f"its comment is damaged: {error}") from None
     if not isinstance(result, dict):

@@ -56,7 +56,7 @@ class EventsReader:
             self.names.setdefault(_meaning(event), event.name)
         known = {event.name for event in self.events}
         for item in self.model["eventChains"]:
-            if item in self.joined or SYNCHRONIZED in self.context.noted(item) and is_sealed(item):
+            if item in self.joined or (SYNCHRONIZED in self.context.noted(item) and is_sealed(item)):
                 continue
             made = self.chains_of(item)
             self.chains[item] = tuple(chain.name for chain in made)

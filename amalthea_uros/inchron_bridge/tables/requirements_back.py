@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
+from amalthea_uros.inchron_bridge.basics.comments import is_ours
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.seals import objects_beside
 from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time_of
@@ -13,6 +15,7 @@ from amalthea_uros.inchron_bridge.tables.chains_back import EventsReader
 from amalthea_uros.inchron_bridge.tables.graphs_back import joined_steps
 from amalthea_uros.inchron_bridge.tables.requirements import LIMIT, OF_PROCESS
 from amalthea_uros.perf import constraints as perf
+from amalthea_uros.perf import events as perf_events
 from amalthea_uros.perf.constraints import DataGroup
 
 _FIELDS: dict[type[Any], str] = {
@@ -26,6 +29,7 @@ _FIELDS: dict[type[Any], str] = {
     perf.Requirement: "requirements",
     DataGroup: "data_groups",
 }
+_GROUP = "requirement.GroupOfRequirements"
 _METRICS = {kind: metric for metric, kind in OF_PROCESS.items()}
 
 
@@ -33,7 +37,7 @@ def extract_constraints(context: Importing, model: ProjectObject, events: Events
     """All limits that are understood."""
     result: dict[str, list[Any]] = {field: [] for field in _FIELDS.values()}
     covered: set[ProjectObject] = set()
-    for item in model["requirements"]:
+    for item in _stated(model["requirements"]):
         if item in covered:
             continue
         kept = context.whole(item, LIMIT, tuple(_FIELDS), origin=context.location(item))
@@ -47,15 +51,33 @@ def extract_constraints(context: Importing, model: ProjectObject, events: Events
     return perf.Constraints(**{field: tuple(limits) for field, limits in result.items()})
 
 
+def _stated(items: list[ProjectObject]) -> Iterator[ProjectObject]:
+    """The requirements, also those in groups."""
+    waiting = list(reversed(items))
+    while waiting:
+        item = waiting.pop()
+        if item.kind == _GROUP and item["requirements"]:
+            waiting += reversed(item["requirements"])
+        elif item.kind != _GROUP or is_ours(item):
+            yield item
+
+
 def _limits(item: ProjectObject, context: Importing, events: EventsReader) -> list[Any]:
-    """The limits of a requirement; none, with a finding, if it is not understood."""
-    if not item["evaluate"]:
+    """The limits of a requirement; if it is not understood, one of which nobody can say whether it is met, with a finding."""
+    if not item["evaluate"] and item.kind != _GROUP:
         return []
     try:
         return list(_understood(item, context, events))
     except UnknownError as error:
-        context.note("INC006", f"the requirement {item.name!r} ({item.kind}) is left out: {error}", item)
-        return []
+        kind = item.kind.rpartition(".")[2]
+        context.note(
+            "INC006", f"the requirement {item.name!r} ({kind}) is not understood, so that nothing meets it: {error}", item
+        )
+        origin = context.location(item)
+        chain = perf_events.EventChain(name=context.name("EventGraph", item, f"{kind} {item.name}".rstrip()), origin=origin)
+        events.result.append(chain)
+        name = context.name("Constraint", item, item.name or kind)
+        return [perf.LatencyConstraint(name=name, chain=chain.name, origin=origin)]
 
 
 def _understood(item: ProjectObject, context: Importing, events: EventsReader) -> list[Any]:
