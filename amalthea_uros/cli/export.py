@@ -48,11 +48,22 @@ def _show_version(context: click.Context, _parameter: click.Parameter, value: bo
         context.exit()
 
 
+def _install(context: click.Context, _parameter: click.Parameter, value: bool) -> None:
+    """Register amuros in the settings of chronSUITE."""
+    if value:
+        from amalthea_uros.services.importer_registration import register
+
+        path = register(Path(sys.argv[0]).resolve())
+        click.echo(f"amuros is the importer of AMALTHEA models of chronSUITE now ({path})")
+        context.exit()
+
+
 @click.command("export", cls=_ExportCommand)
 @click.argument("paths", nargs=-1, required=True, type=INPUT, metavar="MODEL_OR_YAML...")
 @click.option(
     "-o",
     "--out",
+    "--output",
     "target",
     type=OUTPUT_FILE,
     help="The file to write: project.iprx, or model.amxmi for a project; default: standard output.",
@@ -64,7 +75,17 @@ def _show_version(context: click.Context, _parameter: click.Parameter, value: bo
     help="Behave as chronSUITE expects an importer to: messages, exit codes, --version.",
 )
 @click.option(
+    "--install",
+    "-i",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_install,
+    help="Make amuros the importer of AMALTHEA models in the settings of chronSUITE.",
+)
+@click.option(
     "--version",
+    "-V",
     is_flag=True,
     expose_value=False,
     is_eager=True,
@@ -81,7 +102,7 @@ def _show_version(context: click.Context, _parameter: click.Parameter, value: bo
 @click.option("--stable", is_flag=True, expose_value=False, hidden=True)
 @click.option("--relax", is_flag=True, expose_value=False, hidden=True)
 @click.option("--pedantic", is_flag=True, expose_value=False, hidden=True)
-@click.option("-Q", "is_dry", is_flag=True, hidden=True)
+@click.option("-Q", "--no-output", "is_dry", is_flag=True, hidden=True)
 def export(
     paths: tuple[Path, ...],
     target: Path | None,
@@ -99,8 +120,8 @@ def export(
     place for is reported, and kept in comments that only amuros reads. With a project as MODEL_OR_YAML and -o MODEL.amxmi, the
     project becomes an AMALTHEA model. Several files make one model.
 
-    To have chronSUITE import AMALTHEA models with it, configure an importer with the command line 'amuros' and the arguments
-    'export --importer -o %t %f %F'.
+    To have chronSUITE import AMALTHEA models with it, use --install, or configure an importer with the command line 'amuros' and the
+    arguments 'export --importer -o %t %f %F'.
     """
     from amalthea_uros.services import export as service
     from amalthea_uros.services.project_ids import hashed, valued

@@ -1,7 +1,9 @@
 """`amuros export`, also as an importer of chronSUITE."""
 
+import sys
 from xml.etree import ElementTree
 
+import pytest
 from command import amuros
 from support import ROOT
 
@@ -91,3 +93,28 @@ def test_memories_can_be_left_out(tmp_path):
     kinds = {element.tag for element in ElementTree.parse(target).iter()}
     assert not kinds & {"memories", "interconnects", "initiator", "responder"}
     assert amuros("analyze", target).stdout == amuros("analyze", SAMPLE).stdout
+
+
+def test_the_options_of_am2inc_are_understood(tmp_path):
+    target = tmp_path / "project.iprx"
+    assert amuros("export", "--importer", "-V").stdout == amuros("export", "--importer", "--version").stdout
+    assert amuros("export", "--importer", "--relax", "--stable", "-v", "--no-output", "--output", target, MODEL).returncode == 0
+    assert not target.exists()
+    assert amuros("export", "--importer", "--output", target, MODEL).returncode == 0
+    assert target.exists()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the settings are a file on Linux only")
+def test_an_importer_is_entered_in_the_settings_in_place_of_another_one(tmp_path, monkeypatch):
+    settings = tmp_path / "INCHRON" / "ModelImporter.conf"
+    settings.parent.mkdir()
+    settings.write_text("[General]\nn=1\n\n[ModelImporter]\nAmaltheaImporter\\commandline=/opt/am2inc\nOther\\filter=x\n")
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    run = amuros("export", "--importer", "--install")
+    assert (run.returncode, str(settings) in run.stdout) == (0, True)
+    first, *lines = settings.read_text().split("[ModelImporter]\n")
+    assert first == "[General]\nn=1\n\n"
+    names = [line.partition("=")[0].removeprefix("AmaltheaImporter\\") for line in lines[0].splitlines()]
+    assert names == ["commandline", "arguments", "filter", "CurrentVersion", "Other\\filter"]
+    assert 'export --importer -o %t %f %F"\n' in lines[0]
+    assert "am2inc" not in lines[0]
