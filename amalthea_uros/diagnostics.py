@@ -16,6 +16,23 @@ class Severity(StrEnum):
     INFO = "info"
 
 
+class ToolEffect(StrEnum):
+    """What a tool does with the object of a finding when it imports the model.
+
+    Attributes
+    ----------
+    FAILS : it refuses the model or crashes
+    CHANGES : it imports something else
+    DROPS : it leaves the object, or a part of it, out
+    KEEPS : it imports what the model says, which is probably not what is meant
+    """
+
+    FAILS = "fails"
+    CHANGES = "changes"
+    DROPS = "drops"
+    KEEPS = "keeps"
+
+
 @dataclass(frozen=True, slots=True)
 class Location:
     """A place in a file.
@@ -46,6 +63,7 @@ class Finding:
     message : what is wrong
     help : what to do about it, "" if there is nothing to add
     object : qualified name of the object concerned, "" if none
+    effect : what the tool does that the rule is about; None if it is about none, or only about what a tool reports
     """
 
     rule: str
@@ -54,10 +72,16 @@ class Finding:
     location: Location | None = None
     help: str = ""
     object: str = ""
+    effect: ToolEffect | None = None
+
+    @property
+    def grade(self) -> str:
+        """The severity, with the effect if there is one."""
+        return f"{self.severity} ({self.effect})" if self.effect else self.severity
 
     def __str__(self) -> str:
         where = f"{self.location}: " if self.location else ""
-        return f"{where}{self.rule} {self.severity}: {self.message}"
+        return f"{where}{self.rule} {self.grade}: {self.message}"
 
 
 def by_place(finding: Finding) -> tuple[str, int, int, str]:

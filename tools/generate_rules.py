@@ -6,6 +6,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from amalthea_uros.diagnostics import Severity
+from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.rule import RuleProfile
 
@@ -32,12 +34,22 @@ def main(folder: Path) -> None:
 
 
 def _rows(profile: RuleProfile) -> Iterator[str]:
-    yield "| rule | severity | problem | why it matters |"
-    yield "|---|---|---|---|"
-    for identifier in registry.ids((profile,)):
-        rule = registry.kind(identifier)
-        assert rule is not None
-        yield f"| {rule.id} | {rule.severity} | {rule.title} | {rule.rationale} |"
+    kinds = [kind for kind in map(registry.kind, registry.ids((profile,))) if kind is not None]
+    has_effects = any(kind.effect for kind in kinds)
+    yield (
+        "| rule | severity | effect | problem | why it matters |"
+        if has_effects
+        else "| rule | severity | problem | why it matters |"
+    )
+    yield f"|---|---|{'---|' if has_effects else ''}---|---|"
+    for kind in kinds:
+        effect = f" {_effects(kind)} |" if has_effects else ""
+        yield f"| {kind.id} | {kind.severity} |{effect} {kind.title} | {kind.rationale} |"
+
+
+def _effects(kind: FindingKind) -> str:
+    """What a tool does, in the worst case first."""
+    return ", ".join(["fails"] * (kind.severity is Severity.ERROR) + [kind.effect] * (kind.effect is not None))
 
 
 if __name__ == "__main__":

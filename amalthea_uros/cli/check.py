@@ -153,7 +153,8 @@ def explain(identifier: str) -> None:
 
     kind = find_kind(identifier)
     profile = registry.profile_of(kind.id)
-    click.echo(f"{kind.id}: {kind.title} ({kind.severity}{f', profile {profile}' if profile else ''})\n")
+    about = [kind.severity, *filter(None, (kind.effect, profile and f"profile {profile}"))]
+    click.echo(f"{kind.id}: {kind.title} ({', '.join(about)})\n")
     click.echo(f"{kind.rationale}\n{kind.remedy}")
     if isinstance(model_check := registry.check(kind.id), ModelCheck):
         click.echo(f"\nChecked objects: {_targets(model_check)}")

@@ -11,7 +11,7 @@ from typing import Any
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.resources import parsed_yaml
-from amalthea_uros.diagnostics import Severity
+from amalthea_uros.diagnostics import Severity, ToolEffect
 
 #: An entry of a file: its key, and all that follows up to the next key.
 _ENTRY = re.compile(r"^([A-Za-z][\w./-]*):\n(?:(?:[ ].*)?\n)*", re.MULTILINE)
@@ -29,6 +29,7 @@ class FindingKind:
     id : unique; the findings carry it
     title : what is wrong, in a few words
     severity : that of the worst findings of the id
+    effect : of the findings that are not errors, if they are about what a tool does; errors are about what makes it fail
     rationale : why it matters, or what follows from it
     remedy : what to do about it
     fails : content of a file for which the finding is reported, "" if none is useful
@@ -43,6 +44,7 @@ class FindingKind:
     severity: Severity
     rationale: str
     remedy: str
+    effect: ToolEffect | None = None
     fails: str = ""
     edits: Mapping[str, str] = field(default_factory=dict, hash=False)
     passes: str = ""
@@ -81,4 +83,5 @@ def kind_in(file: Path, identifier: str) -> FindingKind:
     content: dict[str, Any] = parsed_yaml(texts[identifier])[identifier]
     if "$" in content.get("fails", ""):
         content["fails"] = Template(content["fails"]).substitute(parsed_yaml(texts[_SNIPPETS])[_SNIPPETS])
-    return FindingKind(**{**content, "id": identifier, "severity": Severity(content["severity"])})
+    effect = ToolEffect(content["effect"]) if "effect" in content else None
+    return FindingKind(**{**content, "id": identifier, "severity": Severity(content["severity"]), "effect": effect})

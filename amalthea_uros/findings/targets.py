@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Finding, Severity, ToolEffect
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,13 +18,13 @@ class TargetTool:
     name : also that of the profile with its rules
     title : how sentences name it
     prefix : with which the ids of its rules start
-    effects : what findings of each severity mean for it
+    effects : what findings of each effect, or else of each severity, mean for it
     """
 
     name: str
     title: str
     prefix: str
-    effects: Mapping[Severity, str] = field(hash=False)
+    effects: Mapping[ToolEffect | Severity, str] = field(hash=False)
 
 
 TARGETS = (
@@ -32,7 +32,12 @@ TARGETS = (
         name="inchron",
         title="INCHRON's importer",
         prefix="INC-",
-        effects={Severity.ERROR: "refuses or crashes at", Severity.WARNING: "drops or changes", Severity.INFO: "simplifies"},
+        effects={
+            ToolEffect.FAILS: "fails at",
+            ToolEffect.CHANGES: "changes",
+            ToolEffect.DROPS: "drops",
+            ToolEffect.KEEPS: "takes as they are",
+        },
     ),
     TargetTool(
         name="ta",
@@ -69,10 +74,10 @@ def split(findings: Iterable[Finding], asked: Collection[str]) -> tuple[list[Fin
 def summary(target: TargetTool, findings: Iterable[Finding]) -> str:
     """One line about what a tool makes of a model.
 
-    >>> from amalthea_uros.diagnostics import Finding, Severity
-    >>> summary(TARGETS[0], [Finding("INC-CO-KIND", Severity.WARNING, "the constraint 'C' is dropped")])
-    "INCHRON's importer: drops or changes 1; amuros check --profile inchron shows them"
+    >>> from amalthea_uros.diagnostics import Finding, Severity, ToolEffect
+    >>> summary(TARGETS[0], [Finding("INC-CO-KIND", Severity.WARNING, "'C' is dropped", effect=ToolEffect.DROPS)])
+    "INCHRON's importer: drops 1; amuros check --profile inchron shows them"
     """
-    count = Counter(finding.severity for finding in findings)
-    effects = [f"{effect} {count[severity]}" for severity, effect in target.effects.items() if count[severity]]
+    count = Counter(finding.effect or finding.severity for finding in findings)
+    effects = [f"{verb} {count[effect]}" for effect, verb in target.effects.items() if count[effect]]
     return f"{target.title}: {', '.join(effects)}; amuros check --profile {target.name} shows them"

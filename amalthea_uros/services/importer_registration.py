@@ -1,7 +1,7 @@
 """The entry of amuros as the importer of AMALTHEA models in the settings of chronSUITE.
 
-On Linux these are a file of Qt's QSettings (am2inc, Options.cpp: organisation INCHRON, application ModelImporter): sections with keys and
-values, in which a backslash separates the groups of a key.
+On Linux these are a file of Qt's QSettings (am2inc, Options.cpp: organisation INCHRON, application ModelImporter): sections with keys
+and values; a backslash separates the groups of a key.
 """
 
 from __future__ import annotations

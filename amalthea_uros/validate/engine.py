@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator
 
 from amalthea_uros._internal.failures import failure
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.diagnostics import Finding, Severity, ToolEffect
 from amalthea_uros.findings.kind import FindingKind
+from amalthea_uros.findings.targets import target_of
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model
 from amalthea_uros.perf.named import Named
@@ -60,8 +61,17 @@ def _findings(rule: ModelCheck, context: Context) -> Iterator[Finding]:
             continue
         for message in messages:
             kind = _kind_of(rule)
-            text, severity = message if isinstance(message, Downgraded) else (message, kind.severity)
-            yield _finding(rule.id, severity, text, element, kind.remedy)
+            graded = message if isinstance(message, Downgraded) else Downgraded(message, kind.severity)
+            yield _finding(rule.id, graded.severity, graded.message, element, kind.remedy, _effect(graded, kind))
+
+
+def _effect(message: Downgraded, kind: FindingKind) -> ToolEffect | None:
+    """What the tool does that a rule is about; it fails at errors, unless something else is said."""
+    if message.effect is not None:
+        return message.effect
+    target = target_of(kind.id)
+    is_failure = target is not None and ToolEffect.FAILS in target.effects and message.severity is Severity.ERROR
+    return ToolEffect.FAILS if is_failure else kind.effect
 
 
 def _kind_of(rule: ModelCheck | SystemCheck) -> FindingKind:
@@ -82,10 +92,12 @@ def concerned(rule: ModelCheck, context: Context) -> Iterator[Element]:
             yield from found
 
 
-def _finding(rule: str, severity: Severity, message: str, element: Element, remedy: str) -> Finding:
+def _finding(
+    rule: str, severity: Severity, message: str, element: Element, remedy: str, effect: ToolEffect | None = None
+) -> Finding:
     document = element.document
     location = document.location_of(element) if document is not None else None
-    return Finding(rule, severity, message, location, remedy, element.qualified_name)
+    return Finding(rule, severity, message, location, remedy, element.qualified_name, effect)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from amalthea_uros._internal.records import dataclass, replace
-from amalthea_uros.diagnostics import Severity
+from amalthea_uros.diagnostics import Severity, ToolEffect
 from amalthea_uros.findings.kind import FindingKind
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.perf.named import Located
@@ -33,10 +33,21 @@ class RuleProfile(StrEnum):
 
 
 class Downgraded(NamedTuple):
-    """A message with a lower severity than that of its rule."""
+    """A message with a lower severity than that of its rule, or with another effect."""
 
     message: str
     severity: Severity = Severity.WARNING
+    effect: ToolEffect | None = None
+
+
+def drops(message: str) -> Downgraded:
+    """A warning about something that a tool drops, of a rule about what it changes."""
+    return Downgraded(message, effect=ToolEffect.DROPS)
+
+
+def changes(message: str, severity: Severity = Severity.WARNING) -> Downgraded:
+    """A message about something that a tool changes, of a rule about what it drops or fails at."""
+    return Downgraded(message, severity, ToolEffect.CHANGES)
 
 
 class SystemProblem(NamedTuple):

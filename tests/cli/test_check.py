@@ -36,7 +36,7 @@ def test_severities_decide_about_the_exit_code(bad):
     assert amuros("check", ADVANCED, *INCHRON, "--fail-on", "warning").returncode == 1
     run = amuros("check", bad, *INCHRON)
     assert run.returncode == 1
-    assert "INC-HW-PU-CLOCK error: the processing unit 'Core_0' has no frequency domain" in run.stdout
+    assert "INC-HW-PU-CLOCK error (fails): the processing unit 'Core_0' has no frequency domain" in run.stdout
     assert "help: Give the processing unit a frequency domain." in run.stdout
 
 
@@ -285,20 +285,21 @@ def test_what_follows_from_a_finding_is_counted_below_it(tmp_path):
 
 
 def test_target_tools_are_summed_up_unless_they_are_asked_for(bad, tmp_path):
-    summary = "INCHRON's importer: refuses or crashes at 1, drops or changes 1; amuros check --profile inchron shows them\n"
+    summary = "INCHRON's importer: fails at 1, drops 1; amuros check --profile inchron shows them\n"
     outputs = ("--output", "text", "--output", f"json={tmp_path / 'j'}", "--output", f"sarif={tmp_path / 's'}")
     run = amuros("check", bad, *outputs)
     assert run.returncode == 0
     assert summary in run.stdout
     assert "INC-HW-PU-CLOCK" not in run.stdout
     clock = next(f for f in json.loads((tmp_path / "j").read_text())["findings"] if f["rule"] == "INC-HW-PU-CLOCK")
-    assert (clock["severity"], clock["counts"]) == ("error", False)
+    assert (clock["severity"], clock["effect"], clock["counts"]) == ("error", "fails", False)
     # CI systems see what people do, and more on request.
     results = json.loads((tmp_path / "s").read_text())["runs"][0]["results"]
     assert [result["ruleId"] for result in results] == ["TIM-CLOCK"]
     amuros("check", bad, *outputs, "--details")
     results = json.loads((tmp_path / "s").read_text())["runs"][0]["results"]
-    assert {"note"} == {result["level"] for result in results if result["ruleId"].startswith("INC-")}
+    of_importer = [(each["level"], each["properties"]["effect"]) for each in results if each["ruleId"].startswith("INC-")]
+    assert sorted(of_importer) == [("note", "drops"), ("note", "fails")]
     for asked in (INCHRON, ("--select", "INC-*"), ("--profile", "timing,inchron")):
         run = amuros("check", bad, *asked)
         assert run.returncode == 1

@@ -12,7 +12,7 @@ from excerpts import model
 from support import SHARED, model_text
 
 from amalthea_uros import check, load
-from amalthea_uros.diagnostics import Severity
+from amalthea_uros.diagnostics import Severity, ToolEffect
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.validate import registry
@@ -246,7 +246,37 @@ def errors(model):
 
 @pytest.mark.parametrize("name", sorted(set(VERDICTS) - NO_MODEL))
 def test_an_error_is_what_the_importer_fails_at(name):
-    assert bool(errors(vector(name))) == (VERDICTS[name]["exit"] != 0)
+    found = check(vector(name), RULES)
+    assert any(each.severity is Severity.ERROR for each in found) == (VERDICTS[name]["exit"] != 0)
+    assert {each.effect for each in found if each.severity is Severity.ERROR} <= {ToolEffect.FAILS}
+    assert not {each.effect for each in found if each.severity is not Severity.ERROR} & {None, ToolEffect.FAILS}
+
+
+#: What the importer makes of the object of a rule, as projects that it wrote show.
+SEEN = {
+    ToolEffect.CHANGES: (
+        "20_ticks_beta",
+        "20_ticks_bounds_default",
+        "20_ticks_stat",
+        "22_label_undef",
+        "25_switch_num_lt",
+    ),
+    ToolEffect.DROPS: (
+        "10_chain_par_badresp",
+        "21_execneed",
+        "23_channel",
+        "31_variablerate",
+        "44_prio_wrongname",
+        "70_unknown_attr",
+    ),
+    ToolEffect.KEEPS: ("25_switch_nocond", "27_runnable_nograph", "23_semaphore_undef"),
+}
+
+
+@pytest.mark.parametrize(("effect", "name"), [(effect, name) for effect, names in SEEN.items() for name in names])
+def test_the_effect_is_what_the_importer_makes_of_the_object(effect, name):
+    own = CAUSES[name] - MODES - EVENTS - {"INC-ST-ORDER"}
+    assert {finding.effect for finding in told(vector(name)) if finding.rule in own} == {effect}
 
 
 #: Rules with errors that no vector shows, and what was seen instead.

@@ -33,7 +33,7 @@ def summary_document(content: ReportContent) -> Document:
 
 
 def _sections(content: ReportContent) -> Iterator[Section]:
-    warnings = [f"{each.rule} {each.severity}: {_short(each.message, _MOST_MESSAGE)}" for each in content.warnings]
+    warnings = [f"{each.rule} {each.grade}: {_short(each.message, _MOST_MESSAGE)}" for each in content.warnings]
     yield section("The verdict is subject to these findings", Sentences(_first(warnings, "more finding")))
     if content.before is not None:
         rows = [(each.target, each.before, each.after) for each in content.differences]

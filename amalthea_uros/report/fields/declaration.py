@@ -107,7 +107,7 @@ def given(source: str) -> Callable[[Any], Any]:
 
 declare(
     Finding,
-    *("rule", "severity", "message", "help"),
+    *("rule", "severity", "effect", "message", "help"),
     ("file", "location.path"),
     ("line", "location.line"),
     ("column", "location.column"),

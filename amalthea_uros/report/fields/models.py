@@ -89,6 +89,7 @@ declare(
             {
                 "id": rule.id,
                 "severity": rule.severity,
+                "effect": rule.effect,
                 "profile": profile_name(rule.id),
                 "title": rule.title,
                 "rationale": rule.rationale,

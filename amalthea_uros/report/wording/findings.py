@@ -18,6 +18,7 @@ def finding_json(finding: Finding) -> dict[str, Any]:
     return {
         "rule": finding.rule,
         "severity": finding.severity,
+        "effect": finding.effect,
         "message": finding.message,
         "help": finding.help,
         "file": str(place.path) if place else None,

@@ -48,7 +48,7 @@ def lines(document: Document, level: int = 1, most_characters: int | None = None
         for block in section.blocks:
             yield from ("", *block_lines(block, most_characters))
     if document.findings:
-        rows = [(str(each.location or ""), each.rule, str(each.severity), each.message) for each in document.findings]
+        rows = [(str(each.location or ""), each.rule, each.grade, each.message) for each in document.findings]
         findings = table("", ("place", "id", "severity", "message"), rows)
         yield from ("", f"{'#' * (level + 1)} Findings", "", *block_lines(findings, most_characters))
 

@@ -73,8 +73,10 @@ def _result(entry: FindingEntry, index: int, artifact: Callable[[Path], dict[str
         # A finding that moved to another line is the same finding.
         "partialFingerprints": {"object/v1": fingerprint(finding)},
     }
-    if entry.part_of is not None:
-        result["properties"] = {"partOf": entry.part_of}
+    if properties := {"partOf": entry.part_of} if entry.part_of is not None else {}:
+        result["properties"] = properties
+    if finding.effect is not None:
+        result.setdefault("properties", {})["effect"] = finding.effect
     if finding.location is not None:
         place: dict[str, Any] = {"artifactLocation": artifact(finding.location.path)}
         if finding.location.line:

@@ -155,7 +155,7 @@ class Terminal:
     def finding(self, finding: Finding) -> None:
         """Write one finding."""
         where = f"{self.style(str(finding.location), '1')}: " if finding.location else ""
-        severity = self.style(f"{finding.rule} {finding.severity}", _COLOURS[finding.severity])
+        severity = self.style(f"{finding.rule} {finding.grade}", _COLOURS[finding.severity])
         self.line(f"{where}{severity}: {finding.message}")
         if finding.location:
             self.snippet(finding.location)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from amalthea_uros.diagnostics import ToolEffect
 from amalthea_uros.metamodel.classes import (
     BooleanObject,
     Condition,
@@ -26,21 +27,23 @@ from amalthea_uros.metamodel.classes import (
     Task,
 )
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Downgraded, model_rule
+from amalthea_uros.validate.rule import Downgraded, drops, model_rule
 from amalthea_uros.validate.rules.inchron.importer import metamodel
 
 
 @model_rule("INC-SW-ACCESS", LabelAccess, ModeLabelAccess, SemaphoreAccess)
-def _check_access(element: LabelAccess | ModeLabelAccess | SemaphoreAccess, context: Context) -> Iterator[str]:
+def _check_access(element: LabelAccess | ModeLabelAccess | SemaphoreAccess, context: Context) -> Iterator[str | Downgraded]:
     match element:
         case LabelAccess() if element.access not in ("read", "write"):
             yield "the label access is neither a read nor a write"
         case ModeLabelAccess(data=ModeLabel(mode=EnumMode()) as label) if element.access not in ("read", "set"):
-            yield f"the access to the mode label {label.name or ''!r} neither reads nor sets a literal and is dropped by am2inc"
+            yield drops(
+                f"the access to the mode label {label.name or ''!r} neither reads nor sets a literal and is dropped by am2inc"
+            )
         case ModeLabelAccess(data=ModeLabel() as label, access=None | "_undefined_"):
-            yield f"the access to the mode label {label.name or ''!r} has no access type and is dropped by am2inc"
+            yield drops(f"the access to the mode label {label.name or ''!r} has no access type and is dropped by am2inc")
         case SemaphoreAccess(semaphore=None):
-            yield "the semaphore access has no semaphore"
+            yield Downgraded("the semaphore access has no semaphore", effect=ToolEffect.KEEPS)
 
 
 @model_rule("INC-SW-CONDKIND", Condition)

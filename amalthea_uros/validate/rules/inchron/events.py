@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.classes import (
     AbstractEventChain,
     Event,
@@ -18,7 +19,7 @@ from amalthea_uros.metamodel.classes import (
 )
 from amalthea_uros.validate.chains import ends, events, parts
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Downgraded, model_rule
+from amalthea_uros.validate.rule import Downgraded, changes, model_rule
 
 #: The classes of events that am2inc converts.
 CONVERTED = (ProcessEvent, RunnableEvent, LabelEvent)
@@ -142,7 +143,7 @@ def _check_set(element: AbstractEventChain, context: Context) -> Iterator[str | 
         for end, event in (("stimulus", element.stimulus), ("response", element.response)):
             count = _size(event)
             if count == 0:
-                yield f"the {end} of the event chain {name!r} is an empty event set"
+                yield changes(f"the {end} of the event chain {name!r} is an empty event set", Severity.ERROR)
             elif count > 1:
                 yield Downgraded(f"the {end} of the event chain {name!r} is a set of {count} events")
     for segment in [] if is_parallel(element) else parts(element)[1:]:
@@ -178,7 +179,7 @@ def _check_items(element: AbstractEventChain, context: Context) -> Iterator[str 
     for branch in branches:
         if not branch.items:
             message = f"the branch {branch.name or ''!r} of the event chain {element.name or ''!r} has no items"
-            yield message if is_converted else Downgraded(message)
+            yield changes(message, Severity.ERROR) if is_converted else Downgraded(message)
 
 
 @model_rule("INC-LC-SCOPE", EventChainLatencyConstraint)

@@ -14,7 +14,7 @@ from amalthea_uros.metamodel.features import containments_of, features_of
 from amalthea_uros.metamodel.source import Prefixes
 from amalthea_uros.metamodel.versions import VersionFacts, facts, spelled
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Downgraded, model_rule
+from amalthea_uros.validate.rule import Downgraded, changes, model_rule
 from amalthea_uros.validate.rules.inchron.importer import attributes_at, metamodel_of, tag_of
 
 #: The versions that am2inc supports.
@@ -137,7 +137,7 @@ def _not_read(element: Element, class_name: str, known: VersionFacts) -> Iterato
             message = f"{text!r} is not a valid value of the attribute {name!r} of {class_name}"
             # Numbers are not checked: what is read is 0, the digits at the beginning, or any value.
             yield (
-                Downgraded(f"{message}; am2inc reads another number")
+                changes(f"{message}; am2inc reads another number")
                 if feature.type.removesuffix("Object").endswith(_NUMBERS)
                 else message
             )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from amalthea_uros.metamodel.classes import EnumMode, Mode, ModeLabel, ModeLabelAccess, ModeValueCondition, NumericMode
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import model_rule
+from amalthea_uros.validate.rule import Downgraded, drops, model_rule
 
 _INTEGER = re.compile(r"\s*[+-]?[0-9]+").fullmatch
 
@@ -38,14 +38,14 @@ def _check_numeric_access(element: ModeLabelAccess, context: Context) -> Iterato
 
 
 @model_rule("INC-SW-MODE-VALUE", ModeLabel, ModeValueCondition, ModeLabelAccess)
-def _check_value(element: ModeLabel | ModeValueCondition | ModeLabelAccess, context: Context) -> Iterator[str]:
+def _check_value(element: ModeLabel | ModeValueCondition | ModeLabelAccess, context: Context) -> Iterator[str | Downgraded]:
     match element:
         case ModeLabel() if element.mode is not None and element.initial_value:
             yield from _faults(element, element.initial_value, "starts with")
         case ModeValueCondition() if element.label is not None and element.label.unresolved is None:
             yield from _faults(element.label, element.value, "is compared with")
         case ModeLabelAccess(data=ModeLabel(mode=EnumMode()) as label, access="set"):
-            yield from _faults(label, element.value, "is set to")
+            yield from map(drops, _faults(label, element.value, "is set to"))
 
 
 def _faults(label: ModeLabel, value: str | None, use: str) -> Iterator[str]:

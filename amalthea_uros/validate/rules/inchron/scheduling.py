@@ -22,7 +22,7 @@ from amalthea_uros.metamodel.classes import (
     Time,
 )
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import model_rule
+from amalthea_uros.validate.rule import Downgraded, changes, model_rule
 
 
 @model_rule("INC-MAP-SHAREDRUN", Runnable)
@@ -61,10 +61,12 @@ def _processes(context: Context) -> Iterator[tuple[OperatingSystem, IExecutable]
 
 
 @model_rule("INC-MAP-TASK-ONCE", Task, ISR)
-def _check_task_once(element: Task | ISR, context: Context) -> Iterator[str]:
+def _check_task_once(element: Task | ISR, context: Context) -> Iterator[str | Downgraded]:
     times = context.uses(TaskAllocation, "task")[element] + context.uses(ISRAllocation, "isr")[element]
-    if times != 1:
-        yield f"{element.name or ''!r} is allocated {times} times" if times else f"{element.name or ''!r} is not allocated"
+    if times > 1:
+        yield changes(f"{element.name or ''!r} is allocated {times} times")
+    elif not times:
+        yield f"{element.name or ''!r} is not allocated"
 
 
 #: The parameters that am2inc reads, by the class of their holder.

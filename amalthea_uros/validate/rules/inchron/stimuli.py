@@ -23,7 +23,7 @@ from amalthea_uros.metamodel.classes import (
 from amalthea_uros.metamodel.magnitudes import in_one_unit
 from amalthea_uros.metamodel.naming import name_of
 from amalthea_uros.validate.context import Context
-from amalthea_uros.validate.rule import Downgraded, model_rule, repair_of
+from amalthea_uros.validate.rule import Downgraded, changes, model_rule, repair_of
 from amalthea_uros.validate.rules.inchron.importer import amount
 
 #: The classes of stimuli that am2inc does not convert.
@@ -64,11 +64,13 @@ def _check_burst(element: PeriodicBurstStimulus, context: Context) -> Iterator[s
 
 
 @model_rule("INC-ST-JITTER", PeriodicStimulus)
-def _check_jitter(element: PeriodicStimulus, context: Context) -> Iterator[str]:
+def _check_jitter(element: PeriodicStimulus, context: Context) -> Iterator[str | Downgraded]:
     jitter = element.jitter
     if isinstance(jitter, TimeGaussDistribution):
         if jitter.lower_bound is None or jitter.upper_bound is None or (jitter.mean is not None and jitter.mean.value):
-            yield f"the Gaussian jitter of the stimulus {element.name or ''!r} has a missing bound or a mean other than 0"
+            yield changes(
+                f"the Gaussian jitter of the stimulus {element.name or ''!r} has a missing bound or a mean other than 0"
+            )
     elif jitter is not None and not isinstance(jitter, TimeConstant | TimeUniformDistribution):
         yield f"the jitter of the stimulus {element.name or ''!r} is dropped by am2inc"
 
