@@ -52,8 +52,13 @@ def _link(item: ProjectObject, name: str, target: ProjectObject) -> None:
 
 
 def _finding(item: ProjectObject, reason: str) -> Finding:
-    message = f"the INCHRON metamodel does not allow {item.kind} {item.name!r}: {reason}"
-    return Finding("INC002", Severity.ERROR, message, None, "State in the model what is missing.", item.name)
+    named = item
+    while not named.name and named.owner is not None:
+        named = named.owner
+    of = "" if named is item else f"a {item.kind} of "
+    message = f"the INCHRON metamodel does not allow {of}{named.kind} {named.name!r}: {reason}"
+    remedy = "State in the model what is missing, or a value that fits."
+    return Finding("INC002", Severity.ERROR, message, None, remedy, named.name)
 
 
 class _ProjectWriter:

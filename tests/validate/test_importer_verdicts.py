@@ -767,6 +767,12 @@ def allocated(attributes):
         ("INC-IO-RANGE", ["warning"], allocation("priority", '<value t="IntegerObject" value="-2147483649"/>')),
         ("INC-IO-RANGE", [], stimulus("PeriodicStimulus", '<recurrence value="9223372036854775807" unit="ps"/>')),
         ("INC-IO-RANGE", ["warning"], stimulus("PeriodicStimulus", '<recurrence value="9223372036854775808" unit="ps"/>')),
+        ("INC-IO-RANGE", ["warning"], ticks('<default t="DiscreteValueConstant" value="9223372036854775808"/>')),
+        (
+            "INC-IO-RANGE",
+            ["warning"],
+            '<swModel><labels name="L"><size value="9223372036854775808" unit="B"/></labels></swModel>',
+        ),
         ("INC-SW-GROUPNAME", ["info"], graph('<items t="Group" name="G"><items t="Switch"/></items>')),
         ("INC-SW-GROUPNAME", [], graph('<items t="Group" name="G"><items t="Ticks"/><items t="Switch"/></items>')),
         ("INC-IO-REF", ["error"], '<mappingModel><memoryMapping abstractElement="X?type=Label"/></mappingModel>'),

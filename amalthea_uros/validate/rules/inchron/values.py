@@ -8,6 +8,8 @@ from amalthea_uros.metamodel.classes import (
     ISR,
     Cache,
     DataSize,
+    DiscreteValueConstant,
+    DiscreteValueInterval,
     FixedPeriodic,
     Frequency,
     HwModule,
@@ -15,7 +17,9 @@ from amalthea_uros.metamodel.classes import (
     IntegerObject,
     Label,
     Memory,
+    PeriodicBurstStimulus,
     Runnable,
+    Semaphore,
     Stimulus,
     Task,
     Time,
@@ -40,19 +44,24 @@ def _check_memory_size(element: Memory | Cache, context: Context) -> Iterator[st
 
 
 #: Bits of the numbers that am2inc reads, by the class and the feature that hold them; larger ones are cut to the largest.
-_BITS: Mapping[type[Element], tuple[str, int]] = {
-    Task: ("multiple_task_activation_limit", 32),
-    IntegerObject: ("value", 32),
-    Time: ("value", 64),
+_BITS: Mapping[type[Element], tuple[int, tuple[str, ...]]] = {
+    Task: (32, ("multiple_task_activation_limit",)),
+    IntegerObject: (32, ("value",)),
+    PeriodicBurstStimulus: (32, ("occurrence_count",)),
+    Semaphore: (32, ("initial_value", "max_value")),
+    Time: (64, ("value",)),
+    DataSize: (64, ("value",)),
+    DiscreteValueConstant: (64, ("value",)),
+    DiscreteValueInterval: (64, ("lower_bound", "upper_bound")),
 }
 
 
 @model_rule("INC-IO-RANGE", *_BITS)
-def _check_range(element: Task | IntegerObject | Time, context: Context) -> Iterator[str]:
-    feature, bits = next(entry for cls, entry in _BITS.items() if isinstance(element, cls))
-    value = getattr(element, feature)
-    if value is not None and not -(2 ** (bits - 1)) <= value < 2 ** (bits - 1):
-        yield f"the value {value} of the {type(element).__name__} does not fit into {bits} bits and is changed by am2inc"
+def _check_range(element: Element, context: Context) -> Iterator[str]:
+    bits, names = next(entry for cls, entry in _BITS.items() if isinstance(element, cls))
+    for value in (getattr(element, name) for name in names):
+        if value is not None and not -(2 ** (bits - 1)) <= value < 2 ** (bits - 1):
+            yield f"the value {value} of the {type(element).__name__} does not fit into {bits} bits and is changed by am2inc"
 
 
 @model_rule("INC-SW-LIMIT", Task)
