@@ -6,6 +6,7 @@ how many `amuros export` writes as something that chronSUITE evaluates. Files wi
 
 from __future__ import annotations
 
+import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
@@ -29,6 +30,10 @@ from amalthea_uros.validate.rule import RuleProfile
 from amalthea_uros.validate.rules.inchron.events import dropped
 from amalthea_uros.validate.rules.inchron.stimuli import NOT_CONVERTED
 
+#: What `amuros export` says of an event chain that it only writes to a comment.
+_REASON = re.compile(
+    r".*an event chain has no place in an INCHRON project(?: \((?P<times>\d+) times\))?: (?P<why>.*); only amuros reads .*"
+)
 _RULES = list(registry.ids([RuleProfile.INCHRON]))
 
 
@@ -39,6 +44,7 @@ class Arrivals:
     Attributes
     ----------
     files, failing, refused : all, those at which am2inc fails, and those that cannot be exported
+    reasons : why event chains are only in comments
     """
 
     files: int = 0
@@ -47,6 +53,7 @@ class Arrivals:
     stated: Counter[str] = field(default_factory=Counter)
     imported: Counter[str] = field(default_factory=Counter)
     exported: Counter[str] = field(default_factory=Counter)
+    reasons: Counter[str] = field(default_factory=Counter)
 
     def add(self, path: Path) -> None:
         """Count a file."""
@@ -63,11 +70,14 @@ class Arrivals:
             self.imported.update(kind for kind, element in _constructs(model) if _IMPORTED[kind](element, lost))
         try:
             opened = open_system(path)
-            project = build_project(opened.system, details_of(model), iterations_of(opened.system)).model
+            built = build_project(opened.system, details_of(model), iterations_of(opened.system))
         except AmurosError:
             self.refused += 1
             return
-        self.exported.update(_exported(project))
+        self.exported.update(_exported(built.model))
+        for finding in built.findings:
+            if found := _REASON.fullmatch(finding.message):
+                self.reasons[re.sub(r" '[^']*'", "", found["why"])] += int(found["times"] or 1)
 
 
 def _constructs(model: Model) -> Iterator[tuple[str, object]]:
@@ -82,6 +92,12 @@ def _constructs(model: Model) -> Iterator[tuple[str, object]]:
                 yield "other timing constraints and requirements", element
             case am.Stimulus():
                 yield "stimuli", element
+            case am.Task() | am.ISR():
+                yield "tasks and ISRs", element
+            case am.Runnable():
+                yield "runnables", element
+            case am.Label():
+                yield "labels", element
 
 
 #: Whether am2inc converts an object, given the chains that it drops.
@@ -90,10 +106,16 @@ _IMPORTED: dict[str, Callable[[object, set], bool]] = {
     "limits of event chains": lambda element, lost: element.scope is not None and element.scope not in lost,
     "other timing constraints and requirements": lambda element, lost: False,
     "stimuli": lambda element, lost: not isinstance(element, NOT_CONVERTED),
+    "tasks and ISRs": lambda element, lost: True,
+    "runnables": lambda element, lost: True,
+    "labels": lambda element, lost: True,
 }
+#: The classes of a project that need nothing else to count.
+_CLASSES = {"Process": "tasks and ISRs", "Function": "runnables", "memory.DataObject": "labels"}
 
 
 def _exported(project: ProjectObject) -> Iterator[str]:
+    yield from (_CLASSES[item.kind] for item in project.walk() if item.kind in _CLASSES)
     yield from ("event chains" for graph in project["eventChains"] if "synchronized" not in (graph["comment"] or ""))
     for item in project["requirements"]:
         if item["evaluate"]:
@@ -124,7 +146,9 @@ def lines(arrivals: Arrivals) -> Iterator[str]:
     yield "| construct | in the models | by am2inc | by amuros export |"
     yield "|---|---|---|---|"
     for kind in _IMPORTED:
-        yield f"| {kind} | {arrivals.stated[kind]} | {arrivals.imported[kind]} | {arrivals.exported[kind]} |"
+        yield f"| {kind} | {arrivals.stated[kind]:,} | {arrivals.imported[kind]:,} | {arrivals.exported[kind]:,} |"
+    yield ""
+    yield from (f"event chains in comments only: {number}, as {why}" for why, number in arrivals.reasons.most_common())
 
 
 if __name__ == "__main__":

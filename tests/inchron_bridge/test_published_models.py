@@ -1,0 +1,29 @@
+"""The table of docs/inchron.md against what arrives of the published models."""
+
+import sys
+
+import pytest
+from effort import IS_THOROUGH
+from support import ROOT, SHARED
+
+sys.path.append(str(ROOT / "benchmarks"))
+from project_exports import count, lines
+
+CORPUS = SHARED / "corpus"
+PAGE = (ROOT / "docs" / "inchron.md").read_text(encoding="utf-8")
+
+
+def chains_of(paths):
+    return count(paths).exported["event chains"]
+
+
+@pytest.mark.skipif(not CORPUS.exists(), reason="the published models are not at hand")
+def test_the_table_counts_what_arrives():
+    """A usual run only counts the chains of the smaller files, of which 4 of one file arrive and none of the others."""
+    if IS_THOROUGH:
+        rows = [row for row in lines(count(sorted(CORPUS.rglob("*.amxmi")))) if row.startswith("|")]
+        assert set(rows) <= set(PAGE.splitlines())
+        return
+    small = [path for path in sorted(CORPUS.rglob("*.amxmi")) if path.stat().st_size < 500_000]
+    paths = [path for path in small if b"<eventChains" in path.read_bytes()]
+    assert (len(paths), chains_of(paths)) == (4, 4)
