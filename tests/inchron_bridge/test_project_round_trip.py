@@ -160,6 +160,38 @@ def test_damaged_projects_end_with_findings(project, damaged):
 
 
 @pytest.mark.parametrize(
+    ("ends", "limit", "more", "verdicts"),
+    [
+        # First takes 1 to 3 ms and starts at once, Second waits for it and ends within 5 ms.
+        ("Activate Terminate", 5, "", ["met", "met"]),
+        ("Activate Terminate", 4, "", ["met", "missed"]),
+        ("Activate Start", 3, "", ["met", "met"]),
+        ("Activate Start", 2, "", ["met", "missed"]),
+        ("Start Terminate", 9, "", ["unknown", "unknown"]),
+        ("Activate Terminate", 5, '<interval><lowerLimit value="1" unit="ms"/>', ["unknown", "unknown"]),
+        ("Activate Terminate", 5, ' trigger="{start}"', ["unknown", "unknown"]),
+    ],
+)
+def test_limits_between_events_of_a_process_are_understood(project, ends, limit, more, verdicts):
+    text = project.read_text()
+    events = [
+        dict(re.findall(r'<traceEvents intrinsicId="(\S+)" name="(\w+)"', part)) for part in text.split("<schedulables ")[-2:]
+    ]
+    inserted = ""
+    for number, names in enumerate(events):
+        start, end = ({name: identity for identity, name in names.items()}[each] for each in ends.split())
+        inside = more if more.startswith("<") else "<interval><lowerLimit/>"
+        inserted += (
+            f'<requirements xsi:type="requirement:EventTimingRequirement" intrinsicId="_q{number}" name="own{number}" start="{start}" '
+            f'end="{end}"{"" if more.startswith("<") else more.format(start=start)}>{inside}'
+            f'<upperLimit value="{limit}" unit="ms"/></interval></requirements>'
+        )
+    project.write_text(text.replace("<requirements ", f"{inserted}<requirements ", 1))
+    found = {each.name: str(each.verdict) for each in analyze_files(project).analysis.requirements}
+    assert [found["own0"], found["own1"]] == verdicts
+
+
+@pytest.mark.parametrize(
     ("kind", "content"),
     [
         ("NetSlackTimeRequirement", 'process="{First}"><interval/><deadlineDelta/>'),

@@ -30,6 +30,12 @@ _FIELDS: dict[type[Any], str] = {
     DataGroup: "data_groups",
 }
 _GROUP = "requirement.GroupOfRequirements"
+#: The times between two trace events of an object, of which the first is the last one before the second.
+_BETWEEN = {
+    ("Activate", "Terminate"): perf.TimeMetric.RESPONSE_TIME,
+    ("Activate", "Start"): perf.TimeMetric.START_DELAY,
+    ("Entry", "Exit"): perf.TimeMetric.RESPONSE_TIME,
+}
 _METRICS = {kind: metric for metric, kind in OF_PROCESS.items()}
 
 
@@ -117,7 +123,24 @@ def _understood(item: ProjectObject, context: Importing, events: EventsReader) -
                 for value, bound in bounds
                 if value is not None
             ]
+        case "requirement.EventTimingRequirement":
+            return [_between(item, context)]
     raise UnknownError("there is no limit with that meaning")
+
+
+def _between(item: ProjectObject, context: Importing) -> perf.Requirement:
+    """A limit of a time within a job; where jobs overlap, the project measures from a later start, so that this is no less strict."""
+    start, end = item["start"], item["end"]
+    holder = end.owner if end is not None and start is not None and end.owner is start.owner else None
+    metric = _BETWEEN.get((start["type"], end["type"])) if holder is not None else None
+    lower, upper = _interval(item)
+    if holder is None or metric is None or lower or upper is None or item["trigger"] not in (None, end):
+        raise UnknownError("it is not about the longest time within a job")
+    process, runnable = (context.name_of(kind, holder) for kind in ("Process", "Function"))
+    if process is None and runnable is None:
+        raise UnknownError("its process is not understood")
+    limit = perf.TimeLimit(metric=metric, value=upper)
+    return perf.Requirement(name=item.name, process=process, runnable=runnable, limit=limit, origin=context.location(item))
 
 
 def _interval(item: ProjectObject) -> tuple[int | None, int | None]:
