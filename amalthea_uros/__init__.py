@@ -96,6 +96,7 @@ if TYPE_CHECKING:
     from amalthea_uros.diagnostics import Finding as Finding
     from amalthea_uros.diagnostics import Location as Location
     from amalthea_uros.diagnostics import Severity as Severity
+    from amalthea_uros.diagnostics import ToolEffect as ToolEffect
     from amalthea_uros.errors import AmurosError as AmurosError
     from amalthea_uros.errors import InvalidArgumentError as InvalidArgumentError
     from amalthea_uros.errors import ReadError as ReadError
@@ -216,7 +217,7 @@ _NAMES = {
     ),
     "design.task_parameters": ("TaskParameters", "task"),
     "design.taskset": ("taskset",),
-    "diagnostics": ("Finding", "Location", "Severity"),
+    "diagnostics": ("Finding", "Location", "Severity", "ToolEffect"),
     "errors": ("AmurosError", "InvalidArgumentError", "ReadError", "WriteError"),
     "executors.results": ("ExecutorResult", "HandleResult", "Hop", "HopKind", "Loss"),
     "judge.summary": ("Schedulable", "Summary"),

@@ -16,7 +16,7 @@ from support import ROOT
 
 #: Room -> lines of code at most: neither blank lines nor comments nor docstrings.
 LINES = {
-    "__init__": 257,
+    "__init__": 258,
     "__main__": 3,
     "_internal": 927,
     "_version": 1,
@@ -33,7 +33,7 @@ LINES = {
     "executors": 1966,
     "findings": 529,
     "inchron": 532,
-    "inchron_bridge": 3323,
+    "inchron_bridge": 3342,
     "judge": 564,
     "measure": 1113,
     "metamodel": 3288,
