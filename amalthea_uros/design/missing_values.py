@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import count
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
@@ -74,6 +74,7 @@ def missing_values(
             break
         changes += new
         current = analyze_system(changed, _settings(system, settings, changes))
+        trial.note(changes, current)
     changes = trial.shortened(changes)
     gained = trial.gained(changes)
     return MissingValues(given, tuple(changes), tuple(gained)) if gained else None
@@ -89,12 +90,18 @@ def _bounded(analysis: Analysis) -> set[str]:
 
 @dataclass(slots=True)
 class _ValueTrial:
-    """Analyses with statements, up to an effort."""
+    """Analyses with statements, up to an effort.
+
+    Attributes
+    ----------
+    before : the processes that have a bound without any
+    """
 
     system: System
     settings: Settings
     before: set[str]
     effort: int = 0
+    _gained: dict[tuple[Change, ...], list[str]] = field(default_factory=dict)
 
     def may_continue(self) -> bool:
         """Whether another analysis is within the effort; counts it."""
@@ -119,8 +126,14 @@ class _ValueTrial:
 
     def gained(self, changes: Sequence[Change]) -> list[str]:
         """The processes that have a bound only with the changes."""
-        bounded = _bounded(analyze_system(*apply(self.system, self.settings, changes)))
-        return [name for name in self.system.processes if name in bounded and name not in self.before]
+        if tuple(changes) not in self._gained:
+            self.note(changes, analyze_system(*apply(self.system, self.settings, changes)))
+        return self._gained[tuple(changes)]
+
+    def note(self, changes: Sequence[Change], analysis: Analysis) -> None:
+        """Remember what an analysis with changes gains."""
+        bounded = _bounded(analysis)
+        self._gained[tuple(changes)] = [name for name in self.system.processes if name in bounded and name not in self.before]
 
     def shortened(self, changes: Sequence[Change]) -> list[Change]:
         """The changes without those that give no result."""
