@@ -21,6 +21,7 @@ from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import scheduler_cores
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
@@ -166,6 +167,9 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
             yield from _allocation(name, context.system)
         if not process.stimuli:
             yield Change(name, "period", _PERIOD)
+        for stimulus in (context.system.stimuli_by_name.get(each) for each in process.stimuli):
+            if stimulus is not None and is_unbounded(stimulus, context.system):
+                yield Change(stimulus.name, "min_distance", _PERIOD)
         if name not in context.scheduled or context.scheduled[name].deadline is None:
             yield Change(name, "deadline", _DEADLINE)
         yield from _execution_times(name, context.system)
