@@ -16,7 +16,7 @@ from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call, Execute, walk
-from amalthea_uros.perf.distributions import highest
+from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
@@ -204,7 +204,7 @@ def _allocation(task: str, system: System) -> Iterator[Change]:
 
 
 def _execution_times(process: str, system: System) -> Iterator[Change]:
-    """The execution times without an upper bound, of a process and what it calls."""
+    """The execution times without bounds, of a process and what it calls."""
     activities = list(executed(system.processes[process].activities, system))
     for name in dict.fromkeys(each.runnable for each in activities if isinstance(each, Call)):
         if name in system.runnables and any(map(_is_unbounded, walk(system.runnables[name].activities))):
@@ -214,4 +214,6 @@ def _execution_times(process: str, system: System) -> Iterator[Change]:
 
 
 def _is_unbounded(activity: object) -> bool:
-    return isinstance(activity, Execute) and activity.demand.ticks is not None and highest(activity.demand.ticks) is None
+    if not isinstance(activity, Execute) or activity.demand.ticks is None:
+        return False
+    return None in (lowest(activity.demand.ticks), highest(activity.demand.ticks))
