@@ -9,18 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import count
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call, Execute, walk
-from amalthea_uros.perf.distributions import highest
+from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import scheduler_cores
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
@@ -74,6 +75,7 @@ def missing_values(
             break
         changes += new
         current = analyze_system(changed, _settings(system, settings, changes))
+        trial.note(changes, current)
     changes = trial.shortened(changes)
     gained = trial.gained(changes)
     return MissingValues(given, tuple(changes), tuple(gained)) if gained else None
@@ -89,12 +91,18 @@ def _bounded(analysis: Analysis) -> set[str]:
 
 @dataclass(slots=True)
 class _ValueTrial:
-    """Analyses with statements, up to an effort."""
+    """Analyses with statements, up to an effort.
+
+    Attributes
+    ----------
+    before : the processes that have a bound without any
+    """
 
     system: System
     settings: Settings
     before: set[str]
     effort: int = 0
+    _gained: dict[tuple[Change, ...], list[str]] = field(default_factory=dict)
 
     def may_continue(self) -> bool:
         """Whether another analysis is within the effort; counts it."""
@@ -119,8 +127,14 @@ class _ValueTrial:
 
     def gained(self, changes: Sequence[Change]) -> list[str]:
         """The processes that have a bound only with the changes."""
-        bounded = _bounded(analyze_system(*apply(self.system, self.settings, changes)))
-        return [name for name in self.system.processes if name in bounded and name not in self.before]
+        if tuple(changes) not in self._gained:
+            self.note(changes, analyze_system(*apply(self.system, self.settings, changes)))
+        return self._gained[tuple(changes)]
+
+    def note(self, changes: Sequence[Change], analysis: Analysis) -> None:
+        """Remember what an analysis with changes gains."""
+        bounded = _bounded(analysis)
+        self._gained[tuple(changes)] = [name for name in self.system.processes if name in bounded and name not in self.before]
 
     def shortened(self, changes: Sequence[Change]) -> list[Change]:
         """The changes without those that give no result."""
@@ -153,6 +167,9 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
             yield from _allocation(name, context.system)
         if not process.stimuli:
             yield Change(name, "period", _PERIOD)
+        for stimulus in (context.system.stimuli_by_name.get(each) for each in process.stimuli):
+            if stimulus is not None and is_unbounded(stimulus, context.system):
+                yield Change(stimulus.name, "min_distance", _PERIOD)
         if name not in context.scheduled or context.scheduled[name].deadline is None:
             yield Change(name, "deadline", _DEADLINE)
         yield from _execution_times(name, context.system)
@@ -187,7 +204,7 @@ def _allocation(task: str, system: System) -> Iterator[Change]:
 
 
 def _execution_times(process: str, system: System) -> Iterator[Change]:
-    """The execution times without an upper bound, of a process and what it calls."""
+    """The execution times without bounds, of a process and what it calls."""
     activities = list(executed(system.processes[process].activities, system))
     for name in dict.fromkeys(each.runnable for each in activities if isinstance(each, Call)):
         if name in system.runnables and any(map(_is_unbounded, walk(system.runnables[name].activities))):
@@ -197,4 +214,6 @@ def _execution_times(process: str, system: System) -> Iterator[Change]:
 
 
 def _is_unbounded(activity: object) -> bool:
-    return isinstance(activity, Execute) and activity.demand.ticks is not None and highest(activity.demand.ticks) is None
+    if not isinstance(activity, Execute) or activity.demand.ticks is None:
+        return False
+    return None in (lowest(activity.demand.ticks), highest(activity.demand.ticks))

@@ -1,6 +1,7 @@
 """What is counted of the answers about many models, and the figures that the page states."""
 
 import re
+from collections import Counter
 
 import pytest
 from answers import Answers, count, lines
@@ -23,6 +24,30 @@ def test_reasons_are_counted_without_names():
     assert list(lines(found))[-1] == "    2 in   1 files: depends on '...', which could not be analysed"
 
 
+#: How a reason begins or goes on, and its row on the page; the first one that fits counts.
+KINDS = {
+    "it is not allocated": "it is not allocated to a scheduler",
+    "it has no stimulus": "it has no stimulus",
+    "depends on": "depends on another process",
+    "has no policy": "its scheduler has no policy",
+    "it is triggered by": "it is triggered by another process",
+    "as the lowest": "as the lowest, it has no bound",
+    "overload": "overload",
+    "the rate of the stimulus": "the rate of the stimulus is unbounded",
+    "a distribution of ticks": "a distribution of ticks has no bounds",
+    "it waits for": "it waits for events",
+    "there is no analysis for the policy": "there is no analysis for the policy",
+}
+
+
+def kinds(answers):
+    """The processes of each row."""
+    found = Counter()
+    for reason, number in answers.reasons.items():
+        found[next(row for part, row in KINDS.items() if part in reason)] += number
+    return found
+
+
 @pytest.mark.skipif(not CORPUS.exists(), reason="the published models are not here")
 def test_the_figures_of_the_page():
     found = count(sorted(CORPUS.rglob("*.amxmi")))
@@ -35,3 +60,5 @@ def test_the_figures_of_the_page():
         (str(found.files), str(found.complete), str(found.partial)),
         (str(found.chains), str(found.with_latency), ""),
     ]
+    table = re.findall(r"^\| ([a-z][^|]*) \| \d+ \| (\d+) \| ", page, re.MULTILINE)
+    assert {reason: int(number) for reason, number in table if int(number)} == kinds(found)

@@ -11,10 +11,11 @@ from amalthea_uros.bridge.extract import extract
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.design.missing_values import missing_values
+from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
-from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
+from amalthea_uros.perf.stimuli import Custom, Periodic, RelativePeriodic
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings
 
@@ -86,3 +87,31 @@ def test_what_is_added_is_written_to_a_model(change, tmp_path):
     save(build_model(SYSTEM), given)
     write_changed([given], [parse_change(change)], Settings(), path)
     assert extract(load(path)).system == apply(extract(load(given)).system, Settings(), [parse_change(change)]).system
+
+
+def test_a_rate_without_a_bound_is_stated_as_the_least_distance():
+    # At 1 MHz each job takes 10 us: with 1 s between two of them, B waits for one of A, and A for none.
+    system = of_parts(
+        [task("A", "pulses"), task("B", "tick")],
+        [TaskAllocation(task="A", scheduler="core", priority=2), TaskAllocation(task="B", scheduler="core", priority=1)],
+        [Custom(name="pulses", description="by hand"), Periodic(name="tick", period=MS)],
+        policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
+    )
+    assert proposed(system) == ({"pulses.min_distance"}, ("A", "B"))
+    after = analyze_system(*apply(system, Settings(), [parse_change("pulses.min_distance=1s")]))
+    assert [after[name].wcrt * 1000 // MS for name in "AB"] == [10, 20]
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (Uniform(lower=0, upper=5 * MS), Boundaries(lower=2 * MS, upper=5 * MS)),
+        (Uniform(lower=0, upper=MS), Constant(2 * MS)),
+    ],
+)
+def test_a_least_distance_keeps_the_greatest_one_if_that_is_not_less(before, after):
+    system = of_parts([task("A", "pulses")], [], [RelativePeriodic(name="pulses", distance=before, has_maximum=True)])
+    changed = apply(system, Settings(), [parse_change("pulses.min_distance=2ms")]).system.stimuli_by_name["pulses"]
+    assert changed.distance == after
+    # Nobody said that what is farther apart than before does not come.
+    assert changed.has_maximum == (after.upper == before.upper if isinstance(after, Boundaries) else False)

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass, replace
-from amalthea_uros.analyze.response_times.constant_schedule import constant_responses
 from amalthea_uros.analyze.response_times.core import responses_on
 from amalthea_uros.analyze.response_times.known_best_cases import raised
 from amalthea_uros.analyze.response_times.known_offsets import tightened
+from amalthea_uros.analyze.response_times.non_preemptive_schedule import scheduled_responses
 from amalthea_uros.analyze.response_times.several_cores import responses_on_several_cores
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.waits import bound_waits, reasons_besides_waits, warn_of_unknown_waits
@@ -48,7 +48,7 @@ def solve(context: TimingContext) -> Solution:
         changing = _iterate(solution, diverging)
         if not changing:
             for core in context.system.cores:
-                solution.responses |= constant_responses(core, solution) or tightened(core, solution)
+                solution.responses |= scheduled_responses(core, solution) or tightened(core, solution)
                 solution.responses |= raised(core, solution)
             warn_of_unknown_waits(solution)
             return solution

@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from amalthea_uros.design.changes import activation, execution_time, scheduling
+from amalthea_uros.design.changes import activation, distances, execution_time, scheduling
 from amalthea_uros.design.changes.key import (
     CLOCKS,
     ISR_ALLOCATIONS,
@@ -163,7 +163,9 @@ KINDS = (
         "clock", lambda system: system.clocks, {"frequency": Key(positive_frequency, _CLOCK.show, _set_clock_frequency)}
     ),
     ChangeableKind("scheduler", lambda system: system.schedulers, scheduling.SCHEDULER_KEYS),
-    ChangeableKind("stimulus", lambda system: system.stimuli_by_name, activation.STIMULUS_KEYS),
+    ChangeableKind(
+        "stimulus", lambda system: system.stimuli_by_name, {**activation.STIMULUS_KEYS, "min_distance": distances.MIN_DISTANCE}
+    ),
     ChangeableKind("mode label", lambda system: [each.name for each in system.software.mode_labels], {"mode": _MODE_KEY}),
     ChangeableKind("message", sources, activation.MESSAGE_KEYS),
     ChangeableKind("label", lambda system: system.labels, _LABEL_KEYS),

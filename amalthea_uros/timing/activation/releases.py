@@ -22,7 +22,7 @@ from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Activity, Call, Trigger, transformed, walk
 from amalthea_uros.perf.constraints import Bound, TimeLimit, TimeMetric
-from amalthea_uros.perf.distributions import highest
+from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Burst, Counter, Periodic, RelativePeriodic, Synthetic
 from amalthea_uros.perf.system import System
@@ -39,6 +39,36 @@ def known_releases(process: Process, system: System) -> Periodic | None:
             0 < period <= LIMIT and 0 <= offset <= LIMIT
         ):
             return stimulus
+    return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JitteredReleases:
+    """Releases with a period, each of which can be later by a jitter.
+
+    Attributes
+    ----------
+    earliest : time of the first release, as early as it can be
+    """
+
+    period: Time
+    earliest: Time
+    jitter: Time = 0
+
+
+def releases_with_jitter(process: Process, system: System) -> JitteredReleases | None:
+    """The releases of a process, known but for a jitter that keeps their order; None if less is known."""
+    exact = known_releases(process, system)
+    if exact is not None:
+        return JitteredReleases(period=exact.period, earliest=exact.offset)
+    match [system.stimuli_by_name.get(name) for name in process.stimuli]:
+        case [Periodic(condition=None, min_distance=None, period=period, offset=offset, jitter=jitter)] if (
+            jitter is not None and 0 < period <= LIMIT and 0 <= offset <= LIMIT
+        ):
+            least, most = lowest(jitter), highest(jitter)
+            # A jitter can be negative, but nothing is released before the start.
+            if least is not None and most is not None and max(0, offset + least) <= offset + most < offset + least + period:
+                return JitteredReleases(period=period, earliest=offset + least, jitter=most - least)
     return None
 
 

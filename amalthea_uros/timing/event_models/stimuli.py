@@ -41,6 +41,12 @@ def event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | None
     return None if any(time > LIMIT for time in times) else found
 
 
+def is_unbounded(stimulus: perf.Stimulus, system: System) -> bool:
+    """Whether nothing bounds the rate of a stimulus that is no consequence of processes."""
+    is_caused = isinstance(stimulus, perf.InterProcess | perf.EventTriggered)
+    return not is_caused and event_model_of(stimulus, system) is None
+
+
 def _event_model_of(stimulus: perf.Stimulus, system: System) -> EventModel | None:
     match stimulus:
         case perf.Periodic(period=period, jitter=jitter, min_distance=distance) if period > 0:
