@@ -88,7 +88,11 @@ def open_changed(
 
 
 def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:
-    """The object that changes of a subject act on: the text of a description, otherwise the system; raises as `description_origin`."""
+    """What changes of a subject act on: the text of a description, a model, or a system; raises as `description_origin`."""
+    if opened.model is not None:
+        from amalthea_uros.design.model_attributes.origin import ModelOrigin
+
+        return ModelOrigin(given, opened.model)
     if opened.assembly is None:
         return SystemOrigin(given)
     return description_origin(opened, given.settings, with_bus=with_bus)
