@@ -20,6 +20,7 @@ from amalthea_uros.timing.basics.settings import Settings
 
 if TYPE_CHECKING:
     from amalthea_uros.design.description.origin import DescriptionOrigin
+    from amalthea_uros.design.model_attributes.origin import ModelOrigin
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +52,16 @@ class ChangedSystem:
 
         assert isinstance(self.origin, DescriptionOrigin)
         return self.origin.after(self.changes)
+
+    @property
+    def model_source(self) -> ModelOrigin | None:
+        """The model without the changes; None for other systems."""
+        if self.opened.model is None:
+            return None
+        from amalthea_uros.design.model_attributes.origin import ModelOrigin
+
+        assert isinstance(self.origin, ModelOrigin)
+        return self.origin
 
     def check_sweeps(self, sweeps: Iterable[Sweep]) -> None:
         """Refuse names and values that cannot be swept, before the first run; the ends of each sweep are tried."""

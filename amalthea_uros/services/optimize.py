@@ -22,7 +22,7 @@ from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_sear
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
-from amalthea_uros.services.changed import description_origin, open_changed
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.subject import Subject, SystemInput
 from amalthea_uros.timing.basics.settings import Settings
 
@@ -92,7 +92,7 @@ def plan_optimization(
         changed.given,
         wishes or Wishes(),
         opened.assembly,
-        None if opened.assembly is None else description_origin(opened, changed.given.settings),
+        changed.source if opened.model is None else changed.model_source,
         limits=limits,
         goals=goals,
         may_be_later=may_be_later,

@@ -12,9 +12,11 @@ from amalthea_uros.design.changes.apply import apply, check_key, describe
 from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
 from amalthea_uros.design.description.origin import DescriptionOrigin
+from amalthea_uros.design.model_attributes.origin import ModelOrigin
 from amalthea_uros.design.optimize.designs import Designs, RebuiltStructure
 from amalthea_uros.design.optimize.rules import CapacityRule, rules
 from amalthea_uros.design.optimize.space import Choice, DecisionKind, PriorityOrder, Space
+from amalthea_uros.design.optimize.stated_values import Completed, attribute_structures, offered_values
 from amalthea_uros.design.optimize.structures import DescribedCallbacks
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
@@ -77,14 +79,14 @@ class Wishes:
 
 
 def design_space(
-    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: DescriptionOrigin | None
+    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: DescriptionOrigin | ModelOrigin | None
 ) -> tuple[Space, Designs]:
     """The space of designs, and what makes their systems.
 
     Parameters
     ----------
     assembly : of the description of the system; None if it has none
-    source : the text of the description
+    source : the text of the description, or the model
 
     Raises
     ------
@@ -92,20 +94,23 @@ def design_space(
     """
     stated_offers = () if source is None else tuple(each for each in wishes.offers if _is_stated(each, source, assembly))
     builder = _Builder(assembly, present, wishes, stated_offers)
-    described = DescribedCallbacks.of(source) if stated_offers or _needs_description(assembly, wishes) else None
+    model = source if isinstance(source, ModelOrigin) else None
+    needs_description = _needs_description(assembly, wishes) or (stated_offers and model is None)
+    described = DescribedCallbacks.of(None if source is model else source) if needs_description else None
     _check_keep(wishes.keep, present.system, described)
-    stated = () if described is None else tuple(builder.stated_choices(described))
+    offered = () if source is None else tuple(offered_values(source, stated_offers))
+    stated = offered if described is None else (*offered, *builder.stated_choices(described))
     orders = tuple(builder.orders())
     follows = wishes.is_rate_monotonic
     varies_priorities = Vary.PRIORITIES in wishes.vary and not follows
     space = Space(choices=(*builder.choices(), *stated), orders=orders if varies_priorities else ())
 
-    def completed(changes: tuple[Change, ...], rebuilt: Assembly) -> RebuiltStructure:
-        other = _Builder(rebuilt, present._replace(system=rebuilt.system), wishes, stated_offers)
+    def completed(changes: tuple[Change, ...], system: System, rebuilt: Assembly | None) -> RebuiltStructure:
+        other = _Builder(rebuilt, present._replace(system=system), wishes, stated_offers)
         return RebuiltStructure(
             changes=changes,
-            system=rebuilt.system,
-            rules=tuple(rules(rebuilt, rebuilt.system)),
+            system=system,
+            rules=tuple(rules(rebuilt, system)),
             rate_monotonic=tuple(other.orders()) if follows else (),
         )
 
@@ -114,9 +119,17 @@ def design_space(
         rules=tuple(rules(assembly, present.system)),
         rate_monotonic=orders if follows else (),
         stated={choice.target: choice.options[0] for choice in stated},
-        structures={} if described is None else described.structures(stated, completed),
+        structures=_structures(described, model, stated, completed),
     )
     return space, designs
+
+
+def _structures(
+    described: DescribedCallbacks | None, model: ModelOrigin | None, stated: Sequence[Choice], completed: Completed
+) -> Mapping[Candidate, RebuiltStructure | str]:
+    if described is not None:
+        return described.structures(stated, completed)
+    return {} if model is None or not stated else attribute_structures(model, stated, completed)
 
 
 def _needs_description(assembly: Assembly | None, wishes: Wishes) -> bool:
@@ -125,13 +138,15 @@ def _needs_description(assembly: Assembly | None, wishes: Wishes) -> bool:
     return bool(is_stated) or (Vary.COMMUNICATION in wishes.vary and assembly is not None)
 
 
-def _is_stated(offer: Sweep, source: DescriptionOrigin, assembly: Assembly | None) -> bool:
-    """Whether an available value is one of the description that the system has not, or has in another form.
+def _is_stated(offer: Sweep, source: DescriptionOrigin | ModelOrigin, assembly: Assembly | None) -> bool:
+    """Whether an available value is one of the description or the model that the system has not, or has in another form.
 
     Raises
     ------
     InvalidArgumentError : nothing has the name, or no description states the value.
     """
+    if isinstance(source, ModelOrigin):
+        return bool(source.divided(offer.changes()).attributes)
     for change in offer.changes():
         source.divided([change])
     if not source.meant(f"{offer.object}.{offer.key}".removeprefix(".")):
@@ -309,7 +324,6 @@ class _Builder:
 
     def stated_choices(self, source: DescribedCallbacks) -> Iterator[Choice]:
         """Where callbacks run, in which order, and when they take their messages."""
-        yield from source.values(self.stated_offers)
         for kind, choices in (
             (Vary.CALLBACKS, source.placements),
             (Vary.ORDER, source.orders),
