@@ -97,7 +97,7 @@ class _Walk:
             elif isinstance(value, SINGLE_VALUES) or (value is None and issubclass(feature.target, Quantity)):
                 yield self._key(holder, feature, path, names, part=value, is_entry=is_entry)
             elif value is not None:
-                own = (value.__dict__["name"],) if isinstance(value.__dict__.get("name"), str) else ()
+                own = (name,) if (name := value.__dict__.get("name")) else ()
                 yield from self.keys(value, (*path, feature.name), (*names, feature.name, *own))
 
     def _key(
@@ -135,12 +135,12 @@ class _Walk:
 
 def _name_of(item: Element, plan: ClassPlan | None) -> str:
     """The name of an object, or that of the first object that it refers to, such as the task of an allocation; "" for none."""
-    name = item.__dict__.get("name", item.__dict__.get("key"))
+    name = item.__dict__.get("name") or item.__dict__.get("key")
     if isinstance(name, str):
         return name
     for feature in plan.features if plan is not None and not isinstance(item, SINGLE_VALUES) else ():
         target = item.__dict__.get(feature.name) if feature.is_reference and not feature.many else None
-        if target is not None and isinstance(target.__dict__.get("name"), str):
+        if target is not None and target.__dict__.get("name"):
             return str(target.__dict__["name"])
     return ""
 
@@ -157,10 +157,17 @@ def with_last_name(target: str, keys: Iterable[ModelKey]) -> list[tuple[str, Mod
 
 
 def matching(target: str, keys: Iterable[ModelKey]) -> list[ModelKey]:
-    """The keys that are meant by some of their names, the last one among them: without gaps if there are such ones."""
+    """The keys that are meant by some of their names, the last one among them: by the last ones alone or with one object if there are any."""
     spelled = with_last_name(target, keys)
-    found = [pair for name in dict.fromkeys(name for name, _ in spelled) for pair in with_gaps(name, _of(name, spelled))]
-    return [key for gap, key in found if gap == 0] or [key for _, key in found]
+    found: list[ModelKey] = []
+    for name in dict.fromkeys(name for name, _ in spelled):
+        gaps = with_gaps(name, _of(name, spelled))
+        found += (
+            [key for gap, key in gaps if gap == 0]
+            or [key for _, key in gaps if name in shorter_names(key)]
+            or [key for _, key in gaps]
+        )
+    return found
 
 
 def _of(name: str, spelled: Iterable[tuple[str, ModelKey]]) -> list[ModelKey]:
