@@ -9,9 +9,9 @@ from typing import Any
 import click
 
 from amalthea_uros.cli.ends import INTERRUPTED
+from amalthea_uros.cli.key_completion import OfKey
 from amalthea_uros.cli.options import paths_argument, seed_option, settings_options, workers_options
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_line, show_result
-from amalthea_uros.cli.key_completion import OfKey
 from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, POSITIVE, Parsed
 from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, parse_sweep
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary

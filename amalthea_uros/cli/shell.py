@@ -6,7 +6,6 @@ import os
 
 import click
 
-
 #: Where the script for bash takes a completion.
 _PLAIN = "COMPREPLY+=($value)"
 

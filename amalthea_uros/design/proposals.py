@@ -152,7 +152,10 @@ def _not_later(before: Analysis, figures: Figures) -> Iterator[Limit]:
 
 
 def proved_proposal(
-    evaluation: DesignEvaluation, evaluator: DesignEvaluator, before: Analysis, source: DescriptionOrigin | ModelOrigin | None = None
+    evaluation: DesignEvaluation,
+    evaluator: DesignEvaluator,
+    before: Analysis,
+    source: DescriptionOrigin | ModelOrigin | None = None,
 ) -> DesignProposal | None:
     """A proposal, proved by a full analysis of its own: of the edited description if there is one, otherwise of the changed system.
 

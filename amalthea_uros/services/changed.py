@@ -101,9 +101,10 @@ def open_changed(
 def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:
     """What changes of a subject act on: the text of a description, a model, or a system; raises as `description_origin`."""
     if opened.model is not None:
+        from amalthea_uros.design.model_attributes.editable import ModelSource
         from amalthea_uros.design.model_attributes.origin import ModelOrigin
 
-        return ModelOrigin(given, opened.model)
+        return ModelOrigin(given, ModelSource(opened.model, is_own=bool(opened.paths)))
     if opened.assembly is None:
         return SystemOrigin(given)
     return description_origin(opened, given.settings, with_bus=with_bus)

@@ -93,8 +93,42 @@ def _present(assigned: Assigned) -> Any:
     return list(value or ()) if features_of(type(assigned.element))[assigned.feature].many else value
 
 
+class ModelSource:
+    """A model that can be edited for a while, here or in another process.
+
+    Parameters
+    ----------
+    model : None in another process
+    texts : of the model, where there is none
+    is_own : whether nobody else has the model, so that no copy is needed
+    """
+
+    def __init__(self, model: Model | None, texts: ModelTexts | None = None, *, is_own: bool = False) -> None:
+        self._model = model
+        self._texts = texts
+        self._is_own = is_own
+
+    @cached_property
+    def editable(self) -> EditableModel:
+        """The model that is edited; InvalidArgumentError if a copy cannot be made of the model."""
+        if self._is_own and self._model is not None:
+            return EditableModel(self._model)
+        return _copied(self.texts)
+
+    @property
+    def texts(self) -> ModelTexts:
+        """The texts of the files; raises as `ModelTexts.of`."""
+        if self._texts is None:
+            assert self._model is not None
+            self._texts = ModelTexts.of(self._model)
+        return self._texts
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return ModelSource, (None, self.texts)
+
+
 @lru_cache(maxsize=2)
-def editable(texts: ModelTexts) -> EditableModel:
+def _copied(texts: ModelTexts) -> EditableModel:
     """A copy of a model; searches and campaigns ask for the same one again."""
     from amalthea_uros.xmi.load import load
 

@@ -71,10 +71,10 @@ class ModelKey:
 def keys_of(model: Model) -> Iterator[ModelKey]:
     """All keys of a model, in the order of its files."""
     for document in model.documents:
-        yield from _Walk(document).keys(document.root, (), ())
+        yield from _KeysOfDocument(document).keys(document.root, (), ())
 
 
-class _Walk:
+class _KeysOfDocument:
     """Goes through the objects of a document."""
 
     def __init__(self, document: Document) -> None:
@@ -116,7 +116,12 @@ class _Walk:
         return ModelKey(holder=holder, feature=feature, part=part, path=(*path, feature.name), names=(*names, feature.name))
 
     def _listed(
-        self, holder: Element, feature: FeaturePlan, items: Sequence[Element], path: tuple[str | int, ...], names: tuple[str, ...]
+        self,
+        holder: Element,
+        feature: FeaturePlan,
+        items: Sequence[Element],
+        path: tuple[str | int, ...],
+        names: tuple[str, ...],
     ) -> Iterator[ModelKey]:
         for index, (item, own) in enumerate(zip(items, self._item_names(items), strict=True)):
             item_path, item_names = (*path, feature.name, index), (*names, feature.name, *own)
@@ -157,7 +162,7 @@ def with_last_name(target: str, keys: Iterable[ModelKey]) -> list[tuple[str, Mod
 
 
 def matching(target: str, keys: Iterable[ModelKey]) -> list[ModelKey]:
-    """The keys that are meant by some of their names, the last one among them: by the last ones alone or with one object if there are any."""
+    """The keys that are meant by some of their names, the last one among them; the fewest gaps between these count."""
     spelled = with_last_name(target, keys)
     found: list[ModelKey] = []
     for name in dict.fromkeys(name for name, _ in spelled):

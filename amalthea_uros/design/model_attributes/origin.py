@@ -9,7 +9,7 @@ from amalthea_uros.design.changes.apply import Difference, apply, check_key, des
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.changes.timing_changes import consequences, described
-from amalthea_uros.design.model_attributes.editable import EditableModel, ModelTexts, editable
+from amalthea_uros.design.model_attributes.editable import EditableModel, ModelSource
 from amalthea_uros.design.model_attributes.keys import ModelKey
 from amalthea_uros.design.model_attributes.refusals import refusal
 from amalthea_uros.design.model_attributes.values import checked, shown
@@ -39,21 +39,16 @@ class ModelOrigin:
     Attributes
     ----------
     present : the system and the settings without changes
-    model : it stays as it is; None in other processes
-    texts : of the model, if they are known
+    source : the model
     """
 
     present: Configuration
-    model: Model | None = field(default=None, compare=False)
-    texts: ModelTexts | None = None
+    source: ModelSource = field(compare=False)
 
     @property
     def editable(self) -> EditableModel:
-        """The copy that is edited; InvalidArgumentError if the model cannot be written as text."""
-        if self.texts is not None:
-            return editable(self.texts)
-        assert self.model is not None
-        return editable(ModelTexts.of(self.model))
+        """The model that is edited; InvalidArgumentError if a copy cannot be made of the model."""
+        return self.source.editable
 
     def configure(self, changes: Sequence[Change]) -> Configuration:
         """The system and the settings with changes; InvalidArgumentError if something is wrong with one."""
@@ -93,22 +88,21 @@ class ModelOrigin:
         found = {change.target: (key, change) for key, change in divided.attributes}
         with self.editable.edited(divided.attributes):
             return [
-                Difference(change.object, change.key, before[target], _shown_again(key, self.editable))
+                Difference(change.object, change.key, before[target], _shown_again(key))
                 for target, (key, change) in found.items()
             ]
 
     def __reduce__(self) -> tuple[object, ...]:
-        texts = self.texts or ModelTexts.of(self.model)  # type: ignore[arg-type]
         # A replaced system has no tables of names yet.
-        return ModelOrigin, (self.present._replace(system=replace(self.present.system)), None, texts)
+        return ModelOrigin, (self.present._replace(system=replace(self.present.system)), self.source)
 
 
-def _shown_again(key: ModelKey, edited: EditableModel) -> str:
+def _shown_again(key: ModelKey) -> str:
     """The value after an edit, which may have given a part to an object that had none."""
-    part = key.part if key.part is not None or key.feature.data_type is not None or key.feature.is_reference else None
-    if part is None and not (key.feature.data_type is not None or key.feature.is_reference):
-        part = key.holder.__dict__.get(key.feature.name)
-    return shown(replace(key, part=part))
+    is_part = key.feature.data_type is None and not key.feature.is_reference
+    if is_part and key.part is None:
+        key = replace(key, part=key.holder.__dict__.get(key.feature.name))
+    return shown(key)
 
 
 def _refused(system: System, change: Change) -> InvalidArgumentError | None:

@@ -13,9 +13,7 @@ from amalthea_uros.names import listed
 from amalthea_uros.perf.system import System
 
 
-def refusal(
-    change: Change, keys: Sequence[ModelKey], system: System, reason: InvalidArgumentError
-) -> InvalidArgumentError:
+def refusal(change: Change, keys: Sequence[ModelKey], system: System, reason: InvalidArgumentError) -> InvalidArgumentError:
     """The error for a change of what neither the system nor the model has.
 
     Parameters
@@ -29,6 +27,8 @@ def refusal(
     own = list(dict.fromkeys((*of_system, *of_model)))
     if own:
         near = similar(change.key, own)
+        if near and near[0] in of_system:
+            return reason
         advice = f"did you mean '{change.object}.{near[0]}'?" if near else f"it has {listed(own)}"
         return InvalidArgumentError(f"{change.object!r} has no {change.key!r}; {advice}")
     objects = dict.fromkeys(

@@ -142,7 +142,9 @@ def _quantity(text: str, units: _Units, present: StrEnum | None) -> tuple[Any, A
 def _target(name: str, target: type[Element], model: Model) -> Element:
     """The object of a class with a name, or with its qualified name where several have the same one."""
     every = [each for each in model.all(target) if isinstance(each.__dict__.get("name"), str)]
-    found = [each for each in every if each.__dict__["name"] == name] or [each for each in every if qualified_name(each) == name]
+    found = [each for each in every if each.__dict__["name"] == name] or [
+        each for each in every if qualified_name(each) == name
+    ]
     if len(found) == 1:
         return found[0]
     kind = target.__name__

@@ -11,12 +11,10 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.apply import apply, check_key, describe
 from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
-from amalthea_uros.design.description.origin import DescriptionOrigin
-from amalthea_uros.design.model_attributes.origin import ModelOrigin
 from amalthea_uros.design.optimize.designs import Designs, RebuiltStructure
 from amalthea_uros.design.optimize.rules import CapacityRule, rules
 from amalthea_uros.design.optimize.space import Choice, DecisionKind, PriorityOrder, Space
-from amalthea_uros.design.optimize.stated_values import Completed, attribute_structures, offered_values
+from amalthea_uros.design.optimize.stated_values import Source, attribute_structures, is_stated, model_of, offered_values
 from amalthea_uros.design.optimize.structures import DescribedCallbacks
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
@@ -79,7 +77,7 @@ class Wishes:
 
 
 def design_space(
-    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: DescriptionOrigin | ModelOrigin | None
+    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: Source | None
 ) -> tuple[Space, Designs]:
     """The space of designs, and what makes their systems.
 
@@ -92,11 +90,12 @@ def design_space(
     ------
     InvalidArgumentError : an offer or something to keep does not exist, an offered value is wrong, or something cannot be varied.
     """
-    stated_offers = () if source is None else tuple(each for each in wishes.offers if _is_stated(each, source, assembly))
+    stated_offers = () if source is None else tuple(each for each in wishes.offers if is_stated(each, source, assembly))
     builder = _Builder(assembly, present, wishes, stated_offers)
-    model = source if isinstance(source, ModelOrigin) else None
-    needs_description = _needs_description(assembly, wishes) or (stated_offers and model is None)
-    described = DescribedCallbacks.of(None if source is model else source) if needs_description else None
+    model = model_of(source)
+    described = (
+        DescribedCallbacks.of(source) if (stated_offers and model is None) or _needs_description(assembly, wishes) else None
+    )
     _check_keep(wishes.keep, present.system, described)
     offered = () if source is None else tuple(offered_values(source, stated_offers))
     stated = offered if described is None else (*offered, *builder.stated_choices(described))
@@ -119,45 +118,15 @@ def design_space(
         rules=tuple(rules(assembly, present.system)),
         rate_monotonic=orders if follows else (),
         stated={choice.target: choice.options[0] for choice in stated},
-        structures=_structures(described, model, stated, completed),
+        structures=described.structures(stated, completed) if described else attribute_structures(model, stated, completed),
     )
     return space, designs
-
-
-def _structures(
-    described: DescribedCallbacks | None, model: ModelOrigin | None, stated: Sequence[Choice], completed: Completed
-) -> Mapping[Candidate, RebuiltStructure | str]:
-    if described is not None:
-        return described.structures(stated, completed)
-    return {} if model is None or not stated else attribute_structures(model, stated, completed)
 
 
 def _needs_description(assembly: Assembly | None, wishes: Wishes) -> bool:
     """Whether something can change that only a description states: also the semantics of its executor, if it is one."""
     is_stated = {Vary.CALLBACKS, Vary.ORDER} & set(wishes.vary)
     return bool(is_stated) or (Vary.COMMUNICATION in wishes.vary and assembly is not None)
-
-
-def _is_stated(offer: Sweep, source: DescriptionOrigin | ModelOrigin, assembly: Assembly | None) -> bool:
-    """Whether an available value is one of the description or the model that the system has not, or has in another form.
-
-    Raises
-    ------
-    InvalidArgumentError : nothing has the name, or no description states the value.
-    """
-    if isinstance(source, ModelOrigin):
-        return bool(source.divided(offer.changes()).attributes)
-    for change in offer.changes():
-        source.divided([change])
-    if not source.meant(f"{offer.object}.{offer.key}".removeprefix(".")):
-        return False
-    if offer.key == "priority":
-        return assembly is not None and assembly.priority_scale.zero is not None
-    try:
-        check_key(source.present.system, offer.object, offer.key)
-    except InvalidArgumentError:
-        return True
-    return False
 
 
 def _check_keep(keep: Iterable[str], system: System, source: DescribedCallbacks | None) -> None:

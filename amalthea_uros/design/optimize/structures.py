@@ -11,7 +11,7 @@ from amalthea_uros.design.description.edit import edit_description, is_structura
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.optimize.designs import RebuiltStructure
 from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
-from amalthea_uros.design.optimize.stated_values import Completed, check_count
+from amalthea_uros.design.optimize.stated_values import Completed, Source, check_count
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.executors import ExecutorSection
@@ -28,9 +28,9 @@ class DescribedCallbacks:
     whole: Described
 
     @classmethod
-    def of(cls, origin: DescriptionOrigin | None) -> DescribedCallbacks:
+    def of(cls, origin: Source | None) -> DescribedCallbacks:
         """Those of the text of a description; InvalidArgumentError without one."""
-        if origin is None:
+        if not isinstance(origin, DescriptionOrigin):
             raise InvalidArgumentError(
                 "only an app.yaml says where callbacks run and in which order; give one, or leave out 'callbacks'"
             )
