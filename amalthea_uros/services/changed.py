@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import TEXT
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes, Sweep, as_changes
 from amalthea_uros.design.changes.key import Configuration
@@ -88,7 +88,7 @@ def open_changed(
     system, changed_settings = origin.configure(parsed) if parsed else given
     require_settings(changed_settings, system)
     return ChangedSystem(
-        opened=opened,
+        opened=_with_new_findings(opened, origin, parsed),
         origin=origin,
         given=given,
         changes=parsed,
@@ -96,6 +96,16 @@ def open_changed(
         settings=changed_settings,
         differences=differences,
     )
+
+
+def _with_new_findings(opened: SystemInput, origin: ChangeOrigin, changes: Sequence[Change]) -> SystemInput:
+    """What was opened, with what is found in a model with other attributes in place of what was found without them."""
+    if opened.model is None:
+        return opened
+    from amalthea_uros.design.model_attributes.origin import ModelOrigin
+
+    found = origin.findings(changes) if isinstance(origin, ModelOrigin) else None
+    return opened if found is None else replace(opened, findings=(*opened.model.findings, *found))
 
 
 def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:

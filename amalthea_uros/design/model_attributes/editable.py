@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from functools import cached_property, lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
@@ -16,6 +16,9 @@ from amalthea_uros.design.model_attributes.values import Assigned, checked
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.model import Model
+
+if TYPE_CHECKING:
+    from amalthea_uros.bridge.extract import Extraction
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +59,7 @@ class EditableModel:
     def __init__(self, model: Model) -> None:
         self.model = model
         self._found: dict[str, ModelKey | None] = {}
+        self._extracted: tuple[tuple[Change, ...], Extraction] | None = None
 
     @cached_property
     def keys(self) -> tuple[ModelKey, ...]:
@@ -86,6 +90,16 @@ class EditableModel:
         finally:
             for each, value in reversed(present):
                 setattr(each.element, each.feature, value)
+
+    def extracted(self, changes: Sequence[tuple[ModelKey, Change]]) -> Extraction:
+        """What the model with changes means; raises as `edited`. The last answer is kept, for those who ask again."""
+        from amalthea_uros.bridge.extract import extract
+
+        asked = tuple(change for _, change in changes)
+        if self._extracted is None or self._extracted[0] != asked:
+            with self.edited(changes) as model:
+                self._extracted = asked, extract(model)
+        return self._extracted[1]
 
 
 def _present(assigned: Assigned) -> Any:

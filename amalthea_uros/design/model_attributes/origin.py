@@ -13,6 +13,7 @@ from amalthea_uros.design.model_attributes.editable import EditableModel, ModelS
 from amalthea_uros.design.model_attributes.keys import ModelKey
 from amalthea_uros.design.model_attributes.refusals import refusal
 from amalthea_uros.design.model_attributes.values import checked, shown
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.system import System
@@ -55,6 +56,11 @@ class ModelOrigin:
         divided = self.divided(changes)
         return apply(self._edited_system(divided), self.present.settings, divided.others)
 
+    def findings(self, changes: Sequence[Change]) -> tuple[Finding, ...] | None:
+        """What is found while the changed model is extracted; None if no attribute is changed. Raises as `configure`."""
+        attributes = self.divided(changes).attributes
+        return self.editable.extracted(attributes).findings if attributes else None
+
     def differences(self, changes: Sequence[Change]) -> tuple[Difference, ...]:
         """The values before and after changes, and what else differs because of them; raises as `configure`."""
         divided = self.divided(changes)
@@ -76,12 +82,7 @@ class ModelOrigin:
         return DividedModelChanges(tuple(attributes), tuple(others))
 
     def _edited_system(self, divided: DividedModelChanges) -> System:
-        if not divided.attributes:
-            return self.present.system
-        from amalthea_uros.bridge.extract import extract
-
-        with self.editable.edited(divided.attributes) as model:
-            return extract(model).system
+        return self.editable.extracted(divided.attributes).system if divided.attributes else self.present.system
 
     def _attributes(self, divided: DividedModelChanges) -> list[Difference]:
         before = {change.target: shown(key) for key, change in divided.attributes}
