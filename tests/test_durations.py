@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 import amalthea_uros as amuros
-from amalthea_uros.design.stated_times import stated_time
+from amalthea_uros.timing.basics.stated_times import stated_time
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import Duration
 
@@ -34,3 +34,14 @@ def test_arithmetic():
     # A result is in picoseconds; it can be stated again.
     worst = amuros.analyze(amuros.taskset([(ten, two)], priorities="rate monotonic"))["T1"].wcrt
     assert amuros.task("B", period=Duration(worst), wcet="1 ms").period == 2 * MS
+
+
+def test_options_and_settings_take_quantities_with_their_units():
+    options = amuros.Options(duration="10 s", traced=("0 s", Duration.of("1 ms")))
+    assert (options.duration, options.traced) == (10 * 10**12, (0, 10**9))
+    settings = amuros.Settings(frequencies={"Core_0": "300 MHz"}, phases={"cmd_vel": "2 ms"})
+    assert (settings.frequencies, settings.phases) == ({"Core_0": 300 * 10**6}, {"cmd_vel": 2 * 10**9})
+    with pytest.raises(amuros.InvalidArgumentError, match="the number 10 has no unit; write a text such as '10 ms'"):
+        amuros.Options(duration=10)
+    with pytest.raises(amuros.InvalidArgumentError, match="Core_0: '300' has no unit"):
+        amuros.Settings(frequencies={"Core_0": "300"})

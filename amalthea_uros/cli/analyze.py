@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import click
 
 from amalthea_uros._internal.files import is_standard_output
+from amalthea_uros._internal.paths import is_description
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.cli.options import FAILING, analysis_options, fail_on_option, metrics_option, paths_argument, set_option
 from amalthea_uros.cli.output import Output, beside_files, output_option, refuse_input, show_findings, show_result, show_text
@@ -72,6 +74,11 @@ from amalthea_uros.units import shortened
     is_flag=True,
     help="Only list the values that --set, --sweep and --offer can change, with their present values.",
 )
+@click.option(
+    "--matching",
+    metavar="TEXT",
+    help="With --keys: only values whose names contain the text; of a model, these can be all attributes of its objects.",
+)
 @output_option("AnalysisResult")
 def analyze(
     paths: tuple[Path, ...],
@@ -84,6 +91,7 @@ def analyze(
     quantity: str,
     fail_on: str,
     with_keys: bool,
+    matching: str | None,
     outputs: tuple[Output, ...],
     **wanted: bool,
 ) -> None:
@@ -94,13 +102,8 @@ def analyze(
     are met; the exit code is 1 if one of them is missed, an activation is lost, or a core is overloaded. With --set the system is
     changed first, and a table compares the results before and after.
     """
-    if with_keys:
-        from amalthea_uros.services.keys import keys
-
-        values = keys(paths)
-        width = max((len(each.name) for each in values), default=0)
-        for each in values:
-            click.echo(output_line(f"{each.name:<{width}}  {shortened(each.value)}"))
+    if with_keys or matching is not None:
+        _list_keys(paths, matching or "")
         return
     if target is not None:
         if not changes:
@@ -121,6 +124,21 @@ def analyze(
     summary = result.analysis.summary
     show_result(result, outputs, as_text, "" if summary.schedulable is Schedulable.YES else closing_line(summary))
     sys.exit(1 if summary.schedulable in FAILING[fail_on] else 0)
+
+
+def _list_keys(paths: tuple[Path, ...], matching: str) -> None:
+    """Print values that can be changed; if there are none, say so, and of a model how to list more of them."""
+    from amalthea_uros.services.keys import keys
+
+    values = keys(paths, matching=matching)
+    width = max((len(each.name) for each in values), default=0)
+    for each in values:
+        click.echo(output_line(f"{each.name:<{width}}  {shortened(each.value)}"))
+    if not values:
+        click.echo(output_line(f"no value has {matching!r} in its name"), err=True)
+    elif not matching and not is_description(paths[0]):
+        name = values[0].name.rpartition(".")[0]
+        click.echo(f"all attributes of objects are keys, too; for example: --matching {shlex.quote(name)}", err=True)
 
 
 @click.command("chains")

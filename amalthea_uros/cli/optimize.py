@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from amalthea_uros.cli.ends import INTERRUPTED
+from amalthea_uros.cli.key_completion import OfKey
 from amalthea_uros.cli.options import paths_argument, seed_option, settings_options, workers_options
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_line, show_result
 from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, POSITIVE, Parsed
@@ -60,7 +61,7 @@ def _vary(text: str) -> tuple[Vary, ...]:
     "--offer",
     "offers",
     multiple=True,
-    type=Parsed("OBJECT.KEY=VALUES", parse_sweep),
+    type=OfKey("OBJECT.KEY=VALUES", parse_sweep),
     help=f"Values that a property may have, a range or a list, e.g. {SWEEP_EXAMPLE}; may be repeated.",
 )
 @click.option(

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import click
 
 from amalthea_uros._internal.csv_cells import RAW_NAMES
+from amalthea_uros.cli.key_completion import OfKey
 from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, POSITIVE, Parsed, PositiveNumber, assignment
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, SWEEP_EXAMPLE, parse_change, parse_sweep
 from amalthea_uros.judge.summary import Schedulable
@@ -58,7 +59,7 @@ set_option = click.option(
     "--set",
     "changes",
     multiple=True,
-    type=Parsed(FORM, parse_change),
+    type=OfKey(FORM, parse_change),
     help=f"Change a value of the system first, e.g. {EXAMPLE}; may be repeated.",
 )
 metrics_option = click.option(
@@ -97,7 +98,7 @@ def sweep_option(what: str, *, required: bool = False) -> Decorator:
         "sweeps",
         multiple=True,
         required=required,
-        type=Parsed("OBJECT.KEY=VALUES", parse_sweep),
+        type=OfKey("OBJECT.KEY=VALUES", parse_sweep),
         help=f"{what} with each of several values, a range or a list, e.g. {SWEEP_EXAMPLE}; if repeated, with all combinations.",
     )
 

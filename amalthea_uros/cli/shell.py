@@ -6,6 +6,9 @@ import os
 
 import click
 
+#: Where the script for bash takes a completion.
+_PLAIN = "COMPREPLY+=($value)"
+
 
 @click.command("completion")
 @click.argument("shell", type=click.Choice(("bash", "zsh", "fish")))
@@ -22,7 +25,9 @@ def completion(context: click.Context, shell: str) -> None:
 
     complete = get_completion_class(shell)
     assert complete is not None
-    click.echo(complete(context.find_root().command, {}, "amuros", "_AMUROS_COMPLETE").source())
+    script = complete(context.find_root().command, {}, "amuros", "_AMUROS_COMPLETE").source()
+    # A value follows a key at once.
+    click.echo(script.replace(_PLAIN, f"{_PLAIN}\n            [[ $value == *= ]] && compopt -o nospace"))
 
 
 @click.command("lsp")

@@ -14,6 +14,7 @@ from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.description.edit import edit_description, is_structural
 from amalthea_uros.design.description.origin import ASSUMED, DescriptionOrigin
+from amalthea_uros.design.model_attributes.origin import ModelOrigin
 from amalthea_uros.design.optimize.choices import Wishes, design_space
 from amalthea_uros.design.optimize.designs import Designs
 from amalthea_uros.design.optimize.evaluation import DesignEvaluator
@@ -85,20 +86,20 @@ class SearchPlan:
     ----------
     before : the analysis of the present design
     evaluator : judges the designs of the problem
-    source : the text of the description; None for other systems
+    source : the text of the description, or the model; None for other systems
     """
 
     problem: Problem
     before: Analysis
     evaluator: DesignEvaluator
-    source: DescriptionOrigin | None = None
+    source: DescriptionOrigin | ModelOrigin | None = None
 
 
 def plan_search(
     present: Configuration,
     wishes: Wishes,
     assembly: Assembly | None = None,
-    source: DescriptionOrigin | None = None,
+    source: DescriptionOrigin | ModelOrigin | None = None,
     *,
     limits: Iterable[str | Limit] = (),
     goals: Sequence[str] = (),
@@ -110,7 +111,7 @@ def plan_search(
     Parameters
     ----------
     assembly : of the description of the system; None if it has none
-    source : the text of the description
+    source : the text of the description, or the model
     limits, goals, may_be_later, seed : as for `optimize`
 
     Raises
@@ -151,7 +152,10 @@ def _not_later(before: Analysis, figures: Figures) -> Iterator[Limit]:
 
 
 def proved_proposal(
-    evaluation: DesignEvaluation, evaluator: DesignEvaluator, before: Analysis, source: DescriptionOrigin | None = None
+    evaluation: DesignEvaluation,
+    evaluator: DesignEvaluator,
+    before: Analysis,
+    source: DescriptionOrigin | ModelOrigin | None = None,
 ) -> DesignProposal | None:
     """A proposal, proved by a full analysis of its own: of the edited description if there is one, otherwise of the changed system.
 
@@ -160,8 +164,9 @@ def proved_proposal(
     None : no description states the design, or the edited one is another design than the one that was judged.
     """
     designs, candidate = evaluator.designs, evaluation.candidate
-    if source is None:
-        changes, configuration = designs.changes(candidate), designs.configure(candidate)
+    if not isinstance(source, DescriptionOrigin):
+        changes = designs.changes(candidate)
+        configuration = designs.configure(candidate) if source is None else source.configure(changes)
     else:
         try:
             changes = _in_description(designs, candidate, source)
@@ -170,7 +175,7 @@ def proved_proposal(
             return None
     analysis = analyze_system(*configuration)
     if evaluator.judged(candidate, analysis) != evaluation:
-        assert source is not None, "a design was judged in two ways"
+        assert isinstance(source, DescriptionOrigin), "a design was judged in two ways"
         return None
     figures = evaluator.figures(candidate, analysis)
     return DesignProposal(

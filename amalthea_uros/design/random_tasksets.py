@@ -16,11 +16,11 @@ from math import ceil, exp, log
 from random import Random
 from typing import Literal, TypeAlias
 
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.design.task_parameters import TaskParameters, task
 from amalthea_uros.design.taskset import taskset
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 from amalthea_uros.units import MILLISECOND, Duration, Time
 
 #: A seed, which gives the same numbers again, or a generator that continues.

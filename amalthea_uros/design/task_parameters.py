@@ -9,12 +9,12 @@ from operator import index
 from typing import Literal, TypeVar
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import (
     Communication,
 )
 from amalthea_uros.perf.software import Preemption
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 from amalthea_uros.units import Time, time_text
 
 E = TypeVar("E", Preemption, Communication)

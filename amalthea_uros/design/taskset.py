@@ -11,7 +11,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from amalthea_uros._internal.similar import did_you_mean
-from amalthea_uros.design.stated_times import TimeLike
 from amalthea_uros.design.task_parameters import TaskParameters, task
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import (
@@ -33,6 +32,7 @@ from amalthea_uros.perf.os import OperatingSystem, Os, Policy, Scheduler, Semaph
 from amalthea_uros.perf.software import Label, Software, Task
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic, Stimuli
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.basics.stated_times import TimeLike
 from amalthea_uros.units import SECOND, Time
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ from pathlib import Path
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Changes
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.report import formats
 from amalthea_uros.services.files import save_text
 from amalthea_uros.services.report import ReportContent, compile_report
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.results import Comparison
 from amalthea_uros.design.campaign.sweeps import SweepResult
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
@@ -19,6 +18,7 @@ from amalthea_uros.services.files import save_text
 from amalthea_uros.services.optimize import Optimization
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.results import Simulation
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 
 #: The part of a run that is shown, such as ("10 ms", "20 ms").
 WindowLike = tuple[TimeLike, TimeLike]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import TEXT
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes, Sweep, as_changes
 from amalthea_uros.design.changes.key import Configuration
@@ -20,6 +20,7 @@ from amalthea_uros.timing.basics.settings import Settings
 
 if TYPE_CHECKING:
     from amalthea_uros.design.description.origin import DescriptionOrigin
+    from amalthea_uros.design.model_attributes.origin import ModelOrigin
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,6 +53,16 @@ class ChangedSystem:
         assert isinstance(self.origin, DescriptionOrigin)
         return self.origin.after(self.changes)
 
+    @property
+    def model_source(self) -> ModelOrigin | None:
+        """The model without the changes; None for other systems."""
+        if self.opened.model is None:
+            return None
+        from amalthea_uros.design.model_attributes.origin import ModelOrigin
+
+        assert isinstance(self.origin, ModelOrigin)
+        return self.origin
+
     def check_sweeps(self, sweeps: Iterable[Sweep]) -> None:
         """Refuse names and values that cannot be swept, before the first run; the ends of each sweep are tried."""
         for sweep in sweeps:
@@ -77,7 +88,7 @@ def open_changed(
     system, changed_settings = origin.configure(parsed) if parsed else given
     require_settings(changed_settings, system)
     return ChangedSystem(
-        opened=opened,
+        opened=_with_new_findings(opened, origin, parsed),
         origin=origin,
         given=given,
         changes=parsed,
@@ -87,8 +98,23 @@ def open_changed(
     )
 
 
+def _with_new_findings(opened: SystemInput, origin: ChangeOrigin, changes: Sequence[Change]) -> SystemInput:
+    """What was opened, with what is found in a model with other attributes in place of what was found without them."""
+    if opened.model is None:
+        return opened
+    from amalthea_uros.design.model_attributes.origin import ModelOrigin
+
+    found = origin.findings(changes) if isinstance(origin, ModelOrigin) else None
+    return opened if found is None else replace(opened, findings=(*opened.model.findings, *found))
+
+
 def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:
-    """The object that changes of a subject act on: the text of a description, otherwise the system; raises as `description_origin`."""
+    """What changes of a subject act on: the text of a description, a model, or a system; raises as `description_origin`."""
+    if opened.model is not None:
+        from amalthea_uros.design.model_attributes.editable import ModelSource
+        from amalthea_uros.design.model_attributes.origin import ModelOrigin
+
+        return ModelOrigin(given, ModelSource(opened.model, is_own=bool(opened.paths)))
     if opened.assembly is None:
         return SystemOrigin(given)
     return description_origin(opened, given.settings, with_bus=with_bus)

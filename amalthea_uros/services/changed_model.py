@@ -36,6 +36,8 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
     InvalidArgumentError : the model has several files, the path is not that of a model, or a change cannot be written.
     WriteError : the file cannot be written.
     """
+    from amalthea_uros.bridge.extract import extract
+    from amalthea_uros.design.model_attributes.origin import edit_attributes
     from amalthea_uros.xmi.save import save
 
     given = as_model(subject)
@@ -63,7 +65,9 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
         _refuse_migrated(model)
     else:
         model = _copied(model)  # the caller keeps the model without the changes
-    update_model(model, changes, settings)
+    others = edit_attributes(model, extract(model).system, changes)
+    if others or not changes:
+        update_model(model, others, settings)
     save(model, path)
 
 

@@ -16,7 +16,6 @@ from amalthea_uros.compare.results import Comparison, Source
 from amalthea_uros.compare.shares import parse_tolerance
 from amalthea_uros.compare.traces import joined
 from amalthea_uros.design.changes.change import Changes
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
@@ -24,6 +23,7 @@ from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 
 #: What was measured, or the trace to measure.
 Measured: TypeAlias = "Measurement | StrPath | Iterable[StrPath]"

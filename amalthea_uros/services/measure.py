@@ -10,7 +10,6 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.compare.measured.columns import parse_column, parse_unit, parse_valid_rows
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.begins import ModelBegins
 from amalthea_uros.measure.markers import parse_marker
@@ -18,6 +17,7 @@ from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.services.inputs import as_paths
 from amalthea_uros.services.subject import Subject, open_system
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 
 T = TypeVar("T")
 

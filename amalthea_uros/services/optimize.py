@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from time import monotonic
 
-from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
@@ -14,20 +13,23 @@ from amalthea_uros.design.changes.change import Sweep, parse_sweep
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary, Wishes
 from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.parallel_evaluation import evaluator_on
-from amalthea_uros.design.optimize.problem import Conclusion, DesignEvaluation, Goal, SearchResult
+from amalthea_uros.design.optimize.problem import DesignEvaluation, Goal, SearchResult
 from amalthea_uros.design.optimize.quantities import Limit
 from amalthea_uros.design.optimize.search import search
 from amalthea_uros.design.optimize.space import Space
+from amalthea_uros.design.optimize.unstated import StatedOnly, proved_for_stated, without_unstated
 from amalthea_uros.design.proposals import DesignProposal, SearchPlan, plan_search, proved_proposal
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
-from amalthea_uros.services.changed import description_origin, open_changed
+from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.subject import Subject, SystemInput
 from amalthea_uros.timing.basics.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.
 MOST_PROPOSALS = 5
+#: After so many designs that no description states, a search does not go on.
+_MOST_UNSTATED = 500
 #: So many designs are judged, unless more are asked for.
 MOST_DESIGNS = 2000
 
@@ -92,7 +94,7 @@ def plan_optimization(
         changed.given,
         wishes or Wishes(),
         opened.assembly,
-        None if opened.assembly is None else description_origin(opened, changed.given.settings),
+        changed.source if opened.model is None else changed.model_source,
         limits=limits,
         goals=goals,
         may_be_later=may_be_later,
@@ -168,14 +170,22 @@ def optimize(
     )
     effort = Effort(designs=designs, is_complete=is_complete, ended=_clock(time_limit), progress=progress)
     with evaluator_on(plan.evaluator, workers, cluster) as evaluate:
-        found = search(replace(plan.problem, evaluate=evaluate), effort)
-    return found_by(plan, found, proposals)
+        return _found(plan, StatedOnly(evaluate), effort, proposals)
 
 
-def found_by(plan: OptimizationPlan, found: SearchResult, proposals: int = MOST_PROPOSALS) -> Optimization:
-    """The outcome of a search, each proposal proved by a full analysis of its own."""
+def _found(plan: OptimizationPlan, evaluate: StatedOnly, effort: Effort, count: int) -> Optimization:
+    """The outcome of a search, each proposal proved by a full analysis of its own.
+
+    Designs that turn out not to be what any description states are left out; if no other one was found, the search goes on.
+    """
     problem, evaluator, before = plan.problem, plan.evaluator, plan.before
-    proved, found = _proved(plan, found, proposals)
+    while True:
+        found = search(replace(problem, evaluate=evaluate), effort)
+        found = proved_for_stated(found, evaluate.unstated)
+        proved, refuted = _proved(plan, found, count)
+        if not refuted or proved or found.ended or len(evaluate.unstated) > _MOST_UNSTATED:
+            break
+        evaluate = evaluate.without(refuted)
     return Optimization(
         subject=plan.opened.subject,
         paths=plan.opened.paths,
@@ -185,14 +195,16 @@ def found_by(plan: OptimizationPlan, found: SearchResult, proposals: int = MOST_
         before=before,
         present=evaluator.judged((), before),
         proposals=proved,
-        search=found,
+        search=without_unstated(found, refuted) if refuted else found,
         findings=plan.findings,
         settings=problem.present.settings,
     )
 
 
-def _proved(plan: OptimizationPlan, search: SearchResult, count: int) -> tuple[tuple[DesignProposal, ...], SearchResult]:
-    """The proposals, and the result of the search without the designs that the edited description does not confirm."""
+def _proved(
+    plan: OptimizationPlan, search: SearchResult, count: int
+) -> tuple[tuple[DesignProposal, ...], list[DesignEvaluation]]:
+    """The proposals, and the better designs that the edited description does not confirm."""
     proved, refuted = list[DesignProposal](), list[DesignEvaluation]()
     for each in search.best:
         if len(proved) == count:
@@ -202,17 +214,7 @@ def _proved(plan: OptimizationPlan, search: SearchResult, count: int) -> tuple[t
             refuted.append(each)
         else:
             proved.append(proposal)
-    if not refuted:
-        return tuple(proved), search
-    best = tuple(each for each in search.best if each not in refuted)
-    reason = f"{counted(len(refuted), 'design')} of the system cannot be stated in the description"
-    return tuple(proved), replace(
-        search,
-        best=best,
-        front=tuple(each for each in search.front if each not in refuted),
-        conclusion=Conclusion.BEST_FOUND if best else Conclusion.NOT_FOUND,
-        ended="; ".join(filter(None, (search.ended, reason))),
-    )
+    return tuple(proved), refuted
 
 
 def _vary(text: str | Vary) -> Vary:

@@ -11,11 +11,11 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import LatencyQuantity
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.errors import AmurosError, InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.services.analyze import analyze
 from amalthea_uros.services.subject import Subject
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Time
 

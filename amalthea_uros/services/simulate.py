@@ -14,7 +14,6 @@ from amalthea_uros.design.campaign.run import RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep
-from amalthea_uros.design.stated_times import TimeLike, stated_time
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
@@ -25,6 +24,7 @@ from amalthea_uros.services.changed import ChangedSystem, open_changed
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.simulate.options import ALL_LABELS, Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.impact import Impact

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.basics.stated_times import TimeLike, kept_time
 from amalthea_uros.units import Time
 
 #: Among `Options.labels`: all labels.
@@ -37,7 +39,8 @@ class Options:
 
     Attributes
     ----------
-    duration : model time, from 0; at its end the run stops
+    duration : model time, from 0; at its end the run stops. A text such as "10 s" or a `Duration`; a number is in picoseconds,
+        as in results, and small ones are refused, because they are meant otherwise
     seed : of all random values; runs with the same seed are equal on every machine
     settings : as of an analysis
     traced : the part of the model time of which events are recorded; None: nothing is
@@ -51,7 +54,24 @@ class Options:
     traced: tuple[Time, Time] | None = None
     labels: tuple[str, ...] = ()
 
+    if TYPE_CHECKING:  # times may be stated in other ways than they are kept
+
+        def __init__(
+            self,
+            *,
+            duration: TimeLike,
+            seed: int = 1,
+            mode: SimulationMode = SimulationMode.SAMPLED,
+            settings: Settings = ...,
+            traced: tuple[TimeLike, TimeLike] | None = None,
+            labels: tuple[str, ...] = (),
+        ) -> None: ...
+
     def __post_init__(self) -> None:
+        object.__setattr__(self, "duration", kept_time("the duration", self.duration))
+        if self.traced is not None:
+            ends = (kept_time(f"the {end} of the trace", time) for end, time in zip(("begin", "end"), self.traced, strict=True))
+            object.__setattr__(self, "traced", tuple(ends))
         if self.duration <= 0:
             raise InvalidArgumentError("the duration of a simulation must be greater than zero")
         if self.seed < 0:

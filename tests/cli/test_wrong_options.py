@@ -12,6 +12,9 @@ APP = ROOT / "samples" / "bodas-test-simple.yaml"
     [
         ("simulate", ["--btf", "x.btf"], "No such option '--btf': write --trace FILE.btf; the suffix says the format."),
         ("analyze", ["--json"], "write --output json, or --output json=FILE"),
+        ("analyze", ["--sarif"], "this command have no such format; amuros check MODEL --output sarif=FILE has the findings"),
+        ("check", ["--sarif"], "No such option '--sarif': write --output sarif=FILE."),
+        ("sweep", ["--vary", "A.period=1ms"], "No such option '--vary': write --sweep OBJECT.KEY=VALUES."),
         ("report", ["--format", "html"], "write --output FORMAT"),
         ("check", ["--unknown"], "No such option '--unknown'"),
         ("simulate", ["--duration", "10m"], "'m' is not a unit of time; write 'min' for minutes, or 'ms' for milliseconds"),

@@ -54,10 +54,10 @@ def timing_changes(old: System, new: System) -> tuple[TimingChange, ...]:
 def described(given: Configuration, changes: Sequence[Change]) -> tuple[Difference, ...]:
     """The values before and after changes, those that were set and what else differs because of them; raises as `apply`."""
     differences = describe(*given, changes)
-    return (*differences, *_consequences(given, apply(*given, changes), differences))
+    return (*differences, *consequences(given, apply(*given, changes), differences))
 
 
-def _consequences(old: Configuration, new: Configuration, given: Sequence[Difference]) -> Iterator[Difference]:
+def consequences(old: Configuration, new: Configuration, given: Sequence[Difference]) -> Iterator[Difference]:
     """What else differs because of some changes, such as the arrivals of messages that an executor with another period takes."""
     told = {(each.object, each.key) for each in given}
     times = {(each.before, each.after) for each in given if each.key == "execution_time"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.design.changes.key_names import shorter_names, with_gaps
 from amalthea_uros.design.description.text_edits import Path, has_list
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.loops import LoopSection
@@ -142,49 +143,14 @@ def matching(target: str, keys: Sequence[DescriptionKey]) -> list[DescriptionKey
     target = _OTHER_WORDS.get(target, target)
     if whole := [key for key in keys if key.full_name == target]:
         return whole
-    gaps = [(gap, key) for key in keys if (gap := _gap(target, key.names)) is not None]
-    if not gaps:
-        folded = target.casefold()
-        gaps = [(gap, key) for key in keys if (gap := _gap(folded, [each.casefold() for each in key.names])) is not None]
+    gaps = with_gaps(target, keys)
     smallest = min((gap for gap, _ in gaps), default=0)
     return [key for gap, key in gaps if gap == smallest]
 
 
-def _gap(target: str, names: Sequence[str]) -> int | None:
-    """How many names are left out between those of a target; None if the target is no part of the names."""
-    rest = _without(target, names[-1])
-    gap = between = 0
-    for name in reversed(names[:-1]):
-        if not rest:
-            break
-        shorter = _without(rest, name)
-        if shorter is None:
-            between += 1
-        else:
-            rest, gap = shorter, gap + between
-            between = 0
-    return None if rest or rest is None else gap
-
-
-def _without(target: str, name: str) -> str | None:
-    """A target without its last name, None if that is another one."""
-    if target == name:
-        return ""
-    return target.removesuffix(f".{name}") if target.endswith(f".{name}") else None
-
-
 def short_name(key: DescriptionKey, keys: Sequence[DescriptionKey]) -> str:
     """The shortest name that means only this key, if possible with the object that has it."""
-    for name in _candidates(key):
+    for name in shorter_names(key):
         if [each.path for each in matching(name, keys)] == [key.path]:
             return name
     return key.full_name
-
-
-def _candidates(key: DescriptionKey) -> Iterator[str]:
-    objects = [index for index, name in enumerate(key.names[:-1]) if name not in key.path[:-1]]
-    for length in range(1, len(key.names)):
-        end = key.names[-length:]
-        yield from (".".join((key.names[index], *end)) for index in reversed(objects) if index < len(key.names) - length)
-        if len(end) > 1 or len(key.names) == 1:
-            yield ".".join(end)

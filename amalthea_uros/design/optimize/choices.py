@@ -11,10 +11,10 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.apply import apply, check_key, describe
 from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
-from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.optimize.designs import Designs, RebuiltStructure
 from amalthea_uros.design.optimize.rules import CapacityRule, rules
 from amalthea_uros.design.optimize.space import Choice, DecisionKind, PriorityOrder, Space
+from amalthea_uros.design.optimize.stated_values import Source, attribute_structures, is_stated, model_of, offered_values
 from amalthea_uros.design.optimize.structures import DescribedCallbacks
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
@@ -77,35 +77,39 @@ class Wishes:
 
 
 def design_space(
-    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: DescriptionOrigin | None
+    present: Configuration, wishes: Wishes, assembly: Assembly | None, source: Source | None
 ) -> tuple[Space, Designs]:
     """The space of designs, and what makes their systems.
 
     Parameters
     ----------
     assembly : of the description of the system; None if it has none
-    source : the text of the description
+    source : the text of the description, or the model
 
     Raises
     ------
     InvalidArgumentError : an offer or something to keep does not exist, an offered value is wrong, or something cannot be varied.
     """
-    stated_offers = () if source is None else tuple(each for each in wishes.offers if _is_stated(each, source, assembly))
+    stated_offers = () if source is None else tuple(each for each in wishes.offers if is_stated(each, source, assembly))
     builder = _Builder(assembly, present, wishes, stated_offers)
-    described = DescribedCallbacks.of(source) if stated_offers or _needs_description(assembly, wishes) else None
+    model = model_of(source)
+    described = (
+        DescribedCallbacks.of(source) if (stated_offers and model is None) or _needs_description(assembly, wishes) else None
+    )
     _check_keep(wishes.keep, present.system, described)
-    stated = () if described is None else tuple(builder.stated_choices(described))
+    offered = () if source is None else tuple(offered_values(source, stated_offers))
+    stated = offered if described is None else (*offered, *builder.stated_choices(described))
     orders = tuple(builder.orders())
     follows = wishes.is_rate_monotonic
     varies_priorities = Vary.PRIORITIES in wishes.vary and not follows
     space = Space(choices=(*builder.choices(), *stated), orders=orders if varies_priorities else ())
 
-    def completed(changes: tuple[Change, ...], rebuilt: Assembly) -> RebuiltStructure:
-        other = _Builder(rebuilt, present._replace(system=rebuilt.system), wishes, stated_offers)
+    def completed(changes: tuple[Change, ...], system: System, rebuilt: Assembly | None) -> RebuiltStructure:
+        other = _Builder(rebuilt, present._replace(system=system), wishes, stated_offers)
         return RebuiltStructure(
             changes=changes,
-            system=rebuilt.system,
-            rules=tuple(rules(rebuilt, rebuilt.system)),
+            system=system,
+            rules=tuple(rules(rebuilt, system)),
             rate_monotonic=tuple(other.orders()) if follows else (),
         )
 
@@ -114,7 +118,7 @@ def design_space(
         rules=tuple(rules(assembly, present.system)),
         rate_monotonic=orders if follows else (),
         stated={choice.target: choice.options[0] for choice in stated},
-        structures={} if described is None else described.structures(stated, completed),
+        structures=described.structures(stated, completed) if described else attribute_structures(model, stated, completed),
     )
     return space, designs
 
@@ -123,26 +127,6 @@ def _needs_description(assembly: Assembly | None, wishes: Wishes) -> bool:
     """Whether something can change that only a description states: also the semantics of its executor, if it is one."""
     is_stated = {Vary.CALLBACKS, Vary.ORDER} & set(wishes.vary)
     return bool(is_stated) or (Vary.COMMUNICATION in wishes.vary and assembly is not None)
-
-
-def _is_stated(offer: Sweep, source: DescriptionOrigin, assembly: Assembly | None) -> bool:
-    """Whether an available value is one of the description that the system has not, or has in another form.
-
-    Raises
-    ------
-    InvalidArgumentError : nothing has the name, or no description states the value.
-    """
-    for change in offer.changes():
-        source.divided([change])
-    if not source.meant(f"{offer.object}.{offer.key}".removeprefix(".")):
-        return False
-    if offer.key == "priority":
-        return assembly is not None and assembly.priority_scale.zero is not None
-    try:
-        check_key(source.present.system, offer.object, offer.key)
-    except InvalidArgumentError:
-        return True
-    return False
 
 
 def _check_keep(keep: Iterable[str], system: System, source: DescribedCallbacks | None) -> None:
@@ -309,7 +293,6 @@ class _Builder:
 
     def stated_choices(self, source: DescribedCallbacks) -> Iterator[Choice]:
         """Where callbacks run, in which order, and when they take their messages."""
-        yield from source.values(self.stated_offers)
         for kind, choices in (
             (Vary.CALLBACKS, source.placements),
             (Vary.ORDER, source.orders),

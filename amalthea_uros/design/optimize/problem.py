@@ -120,6 +120,7 @@ class SearchResult:
     undecided : number of the designs that were tried of which it is unknown whether all limits hold
     proof : why it is optimal, or why none exists, in words that can be checked
     ended : why the search ended early, such as "time limit"; "" if it did not
+    is_exhaustive : whether the proof is that all designs with few changed values, or all, were judged one by one
     """
 
     best: tuple[DesignEvaluation, ...]
@@ -131,3 +132,4 @@ class SearchResult:
     undecided: int = 0
     proof: str = ""
     ended: str = ""
+    is_exhaustive: bool = False

@@ -37,8 +37,8 @@ def try_all(problem: Problem, is_complete: bool = False, most: int | None = None
     for level in range(1 + (levels if most is None else min(most, levels))):
         judged.judge(designs_with(problem.space, level), AT_A_TIME)
         if stops_early and any(each.feasible is Feasibility.YES for each in found):
-            return judged.concluded(_proof(found, level, is_everything=level == levels))
-    return judged.concluded(_proof(found, level, is_everything=True) if level == levels else "")
+            return replace(judged.concluded(_proof(found, level, is_everything=level == levels)), is_exhaustive=True)
+    return replace(judged.concluded(_proof(found, level, is_everything=True) if level == levels else ""), is_exhaustive=True)
 
 
 def _proof(found: Collection[DesignEvaluation], level: int, is_everything: bool) -> str:

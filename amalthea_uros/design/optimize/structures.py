@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import permutations
-from math import prod
 
 from amalthea_uros._internal.records import dataclass, fields
-from amalthea_uros.design.changes.change import Change, Sweep, compact
+from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.edit import edit_description, is_structural
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.optimize.designs import RebuiltStructure
 from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
+from amalthea_uros.design.optimize.stated_values import Completed, Source, check_count
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.uros.application.callbacks import Callback, callbacks_of, registration_order
 from amalthea_uros.uros.application.notes import Notes
-from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.described import Described, describe_text
-
-#: Each structure is built before the search begins.
-MOST_STRUCTURES = 500
-
-#: What makes the rules and orders of the structure of a system.
-Completed = Callable[[tuple[Change, ...], Assembly], RebuiltStructure]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,20 +28,13 @@ class DescribedCallbacks:
     whole: Described
 
     @classmethod
-    def of(cls, origin: DescriptionOrigin | None) -> DescribedCallbacks:
+    def of(cls, origin: Source | None) -> DescribedCallbacks:
         """Those of the text of a description; InvalidArgumentError without one."""
-        if origin is None:
+        if not isinstance(origin, DescriptionOrigin):
             raise InvalidArgumentError(
                 "only an app.yaml says where callbacks run and in which order; give one, or leave out 'callbacks'"
             )
         return cls(origin, describe_text(origin.text, origin.path))
-
-    def values(self, offers: Iterable[Sweep]) -> Iterator[Choice]:
-        """Available values of the description, the present one first."""
-        for offer in offers:
-            present = self.origin.differences([Change(offer.object, offer.key, offer.values[0])])[0].before
-            options = dict.fromkeys(map(compact, (present, *offer.values)))
-            yield Choice(object=offer.object, key=offer.key, kind=DecisionKind.OTHER, options=tuple(options))
 
     @property
     def executor(self) -> ExecutorSection:
@@ -98,12 +84,7 @@ class DescribedCallbacks:
         ------
         InvalidArgumentError : there are too many.
         """
-        count = prod(len(choice.options) for choice in choices)
-        if count > MOST_STRUCTURES:
-            names = ", ".join(choice.target for choice in choices)
-            raise InvalidArgumentError(
-                f"{names} have {count:,} combinations; at most {MOST_STRUCTURES:,} are possible, leave some out with --keep"
-            )
+        check_count(choices)
         return {own: self._built(own, complete) for own in combinations_of(choices) if own}
 
     def _built(self, own: Candidate, complete: Completed) -> RebuiltStructure | str:
@@ -123,7 +104,7 @@ class DescribedCallbacks:
         rebuilt = describe_text(text, self.origin.path).assembly
         if _demands(rebuilt.system) != _demands(self.whole.assembly.system):
             return "a requirement of the model has no object there"
-        return complete(changes, rebuilt)
+        return complete(changes, rebuilt.system, rebuilt)
 
     def _with_order(self, own: Candidate, inside: Mapping[str, bool]) -> tuple[Change, ...]:
         """The changes, with an order that has only callbacks that run in the executor."""

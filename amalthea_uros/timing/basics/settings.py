@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import StrEnum
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Communication
-from amalthea_uros.units import Frequency, Time
+from amalthea_uros.timing.basics.stated_times import TimeLike, kept_time
+from amalthea_uros.units import Frequency, Time, parse_frequency
 
 
 class MemoryModel(StrEnum):
@@ -25,7 +28,7 @@ class Settings:
 
     Attributes
     ----------
-    frequencies : of cores, instead of those of the system
+    frequencies : of cores, instead of those of the system; each a text such as "300 MHz", or a number of hertz
     scale : factor on all execution times, like slower clocks
     growth : factor on all worst-case execution times; best cases only decrease, so that the analysis covers all smaller factors
     factors : the same for single processes
@@ -33,7 +36,7 @@ class Settings:
     communication : of all label accesses; None: as modelled, implicit by default
     quantile : probability beyond which values of execution times without bounds are taken as impossible, on each side; None: they
         remain unbounded
-    phases : times at which what comes from outside, such as messages, is first taken; other phases are as modelled
+    phases : times at which what comes from outside, such as messages, is first taken, such as "2 ms"; other phases are as modelled
     """
 
     frequencies: Mapping[str, Frequency] = field(default_factory=dict)
@@ -46,7 +49,26 @@ class Settings:
     phases: Mapping[str, Time] = field(default_factory=dict)
     quantile: Fraction | None = None
 
+    if TYPE_CHECKING:  # quantities may be stated in other ways than they are kept
+
+        def __init__(
+            self,
+            frequencies: Mapping[str, Frequency | str] = ...,
+            scale: Fraction = ...,
+            growth: Fraction = ...,
+            factors: Mapping[str, Fraction] = ...,
+            modes: Mapping[str, str] = ...,
+            memory: MemoryModel = ...,
+            communication: Communication | None = ...,
+            phases: Mapping[str, TimeLike] = ...,
+            quantile: Fraction | None = ...,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
+        if any(isinstance(each, str) for each in self.frequencies.values()):
+            object.__setattr__(self, "frequencies", {core: _frequency(core, each) for core, each in self.frequencies.items()})
+        if self.phases:
+            object.__setattr__(self, "phases", {name: kept_time(name, time) for name, time in self.phases.items()})
         for name, kind in (("memory", MemoryModel), ("communication", Communication)):
             given = getattr(self, name)
             if given is not None and not isinstance(given, kind):
@@ -61,3 +83,12 @@ class Settings:
         for what, value in at_least_0:
             if value < 0:
                 raise ValueError(f"{what}: {value} is negative")
+
+
+def _frequency(core: str, value: Frequency | str) -> Frequency:
+    if not isinstance(value, str):
+        return value
+    try:
+        return parse_frequency(value)
+    except ValueError as error:
+        raise InvalidArgumentError(f"{core}: {error}") from None

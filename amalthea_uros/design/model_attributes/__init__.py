@@ -1,0 +1,1 @@
+"""Every attribute of the objects of an AMALTHEA model as a key whose value can be changed."""

@@ -1,0 +1,89 @@
+"""Available values of a description or of a model; their systems are built before a search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from math import prod
+from typing import TypeAlias
+
+from amalthea_uros.design.changes.apply import check_key
+from amalthea_uros.design.changes.change import Change, Sweep, compact
+from amalthea_uros.design.changes.origin import ChangeOrigin
+from amalthea_uros.design.description.origin import DescriptionOrigin
+from amalthea_uros.design.model_attributes.origin import ModelOrigin
+from amalthea_uros.design.optimize.designs import RebuiltStructure
+from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.system import System
+from amalthea_uros.uros.assemble import Assembly
+
+#: What offered values may be of, if it is no system.
+Source: TypeAlias = DescriptionOrigin | ModelOrigin
+#: Each structure is built before the search begins.
+MOST_STRUCTURES = 500
+
+#: What makes the rules and orders of the structure of a system; the assembly is that of its description.
+Completed = Callable[[tuple[Change, ...], System, Assembly | None], RebuiltStructure]
+
+
+def offered_values(origin: ChangeOrigin, offers: Iterable[Sweep]) -> Iterator[Choice]:
+    """Available values of what is changed where a system comes from, the present one first."""
+    for offer in offers:
+        present = origin.differences([Change(offer.object, offer.key, offer.values[0])])[0].before
+        options = dict.fromkeys(map(compact, (present, *offer.values)))
+        yield Choice(object=offer.object, key=offer.key, kind=DecisionKind.OTHER, options=tuple(options))
+
+
+def check_count(choices: Sequence[Choice]) -> None:
+    """Refuse more combinations than can be built before the search begins; raises InvalidArgumentError."""
+    count = prod(len(choice.options) for choice in choices)
+    if count > MOST_STRUCTURES:
+        names = ", ".join(choice.target for choice in choices)
+        raise InvalidArgumentError(
+            f"{names} have {count:,} combinations; at most {MOST_STRUCTURES:,} are possible, leave some out with --keep"
+        )
+
+
+def attribute_structures(
+    origin: ModelOrigin | None, choices: Sequence[Choice], complete: Completed
+) -> Mapping[Candidate, RebuiltStructure | str]:
+    """The system of each combination of attributes of a model, apart from the present one; raises as `check_count`."""
+    if origin is None:
+        return {}
+    model = origin
+
+    def built(own: Candidate) -> RebuiltStructure | str:
+        try:
+            return complete(own, model.configure(own).system, None)
+        except InvalidArgumentError as error:
+            return str(error)
+
+    check_count(choices)
+    return {own: built(own) for own in combinations_of(choices) if own}
+
+
+def is_stated(offer: Sweep, source: Source, assembly: Assembly | None) -> bool:
+    """Whether an available value is one of the description or the model that the system has not, or has in another form.
+
+    Raises
+    ------
+    InvalidArgumentError : nothing has the name, or no description states the value.
+    """
+    if isinstance(source, ModelOrigin):
+        return bool(source.divided(offer.changes()).attributes)
+    for change in offer.changes():
+        source.divided([change])
+    if not source.meant(f"{offer.object}.{offer.key}".removeprefix(".")):
+        return False
+    if offer.key == "priority":
+        return assembly is not None and assembly.priority_scale.zero is not None
+    try:
+        check_key(source.present.system, offer.object, offer.key)
+    except InvalidArgumentError:
+        return True
+    return False
+
+
+def model_of(source: Source | None) -> ModelOrigin | None:
+    """The model that changes act on; None for other systems."""
+    return source if isinstance(source, ModelOrigin) else None
