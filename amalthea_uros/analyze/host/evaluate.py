@@ -7,6 +7,7 @@ from dataclasses import replace
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.host import starvation_free
 from amalthea_uros.analyze.host.findings import add_findings
+from amalthea_uros.analyze.host.multi_threaded import in_groups
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.analyze.host.topics import HostTopics
@@ -47,8 +48,6 @@ def _result(executor: HostExecutor, host: Host, releases: HostReleases) -> Execu
 def _responses(executor: HostExecutor, host: Host, releases: HostReleases) -> dict[str, Response]:
     """The response times of all callbacks, from their own release."""
     known = {callback.name: _from_release(callback, releases) for callback in executor.callbacks}
-    if executor.kind is HostExecutorKind.MULTI_THREADED:
-        return known
     for improved in _improved(executor, host, releases, known):
         for name, response in improved.items():
             if response.worst is not None and response.worst < (known[name].worst or 0):
@@ -67,6 +66,9 @@ def _improved(
     executor: HostExecutor, host: Host, releases: HostReleases, known: dict[str, Response]
 ) -> list[dict[str, Response]]:
     """The results of the methods that hold for the kind of the executor and the distribution."""
+    if executor.kind is HostExecutorKind.MULTI_THREADED:
+        has_threads = releases.has_thread_for_each_group(executor)
+        return [in_groups(executor, releases.released(executor))] if has_threads else []
     supply, higher = releases.processors[executor.name].supply, releases.preempting(executor)
     tasks, is_batch = _in_ready_set(executor, releases), executor.kind is HostExecutorKind.SINGLE_THREADED
     if executor.kind is HostExecutorKind.STATIC:
