@@ -66,8 +66,11 @@ def play(executor, sources, horizon, random):
         for time in times:
             coming[time].append((topic, None))
     for now in range(horizon):
+        # Nothing changes between completions, arrivals, and times at which timers are due.
+        has_changed = now in coming or now in executor.due.values()
         for number, job in enumerate(executor.running):
             if job and job[3] == now:
+                has_changed = True
                 each, release, root, _ = job
                 own[each.name] = max(own[each.name], now - release)
                 whole[each.name] = max(whole[each.name], now - root)
@@ -79,7 +82,7 @@ def play(executor, sources, horizon, random):
                 if each.topic == topic:
                     executor.arrive(each, now, now if root is None else root)
         for number, job in enumerate(executor.running):
-            if job is None and (taken := executor.next(now, random)) is not None:
+            if has_changed and job is None and (taken := executor.next(now, random)) is not None:
                 worst, best = taken[0].worst, taken[0].best
                 executor.running[number] = (*taken, now + random.choice([worst, random.randint(best, worst)]))
     return own, whole

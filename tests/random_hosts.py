@@ -67,13 +67,27 @@ def random_callbacks(random, left, chains):
 def random_groups(random):
     """Callbacks of a multi-threaded executor with their groups ("": reentrant), sources and paths, and its number of threads."""
     threads = random.randint(2, 4)
-    callbacks, sources, paths = random_callbacks(random, random.choice([0.7, 0.9, 0.5 * threads]), 6)
+    callbacks, sources, paths = random_callbacks(random, random.choice([0.7, 0.5 * threads]), 5)
     names = random.choice([["a"], ["a", "b"], ["a", "b", "c", "d"], ["", "a"], [""], ["", "a", "b", "c"]])
     if random.random() < 0.3:
         groups = {name: path[0] for path in paths for name in path}
     else:
         groups = {each.name: random.choice(names) for each in callbacks}
     return callbacks, groups, sources, paths, threads
+
+
+def arrivals(random, period, jitter, horizon):
+    """Messages that come with a jitter; often all of it at first and then none, so that they come close to each other."""
+    phase, style = random.randrange(period), random.random()
+    times = []
+    for nominal in range(phase, horizon, period):
+        late = jitter if nominal < horizon // 2 and style < 0.5 else 0
+        times.append(nominal + (late if style < 0.5 else random.randint(0, jitter)))
+    return sorted(times)
+
+
+def phases(random, callbacks):
+    return {each.name: random.randrange(each.period) for each in callbacks if each.period}
 
 
 def chain_of(names):
@@ -84,9 +98,10 @@ def chain_of(names):
     )
 
 
-def system_of(threads, sources, paths):
-    """The system of executors on one core."""
-    kind, release = KINDS[threads[0].kind]
+def system_of(threads, sources, paths, release=None):
+    """The system of executors on one core; its distribution is that of `KINDS` if none is given."""
+    kind, usual = KINDS[threads[0].kind]
+    release = release or usual
     executors = (
         HostExecutor(
             name=f"E{index}",

@@ -24,8 +24,9 @@ from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents,
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
-#: Jitter that still grows after so many passes is considered unbounded.
-_MAX_PASSES = 200
+#: Jitter that still grows after so many passes is considered unbounded, and so is a latency of so many times that of the first pass.
+_MAX_PASSES, _MAX_GROWTH = 200, 50
+_GROWS = "the jitter of its messages grows from hop to hop without a bound"
 
 
 @dataclass
@@ -74,6 +75,7 @@ class HostReleases:
                 self.processors[executor.name] = processor_of(executor, host)
             except UnknownError as error:
                 self.reasons.setdefault(executor.name, str(error))
+        limit = 0
         for _ in range(_MAX_PASSES):
             before = self._state()
             for executor in host.executors:
@@ -81,8 +83,16 @@ class HostReleases:
                     self._solve(executor)
             if self._state() == before:
                 return
+            greatest = {executor.name: self._greatest(executor) for executor in host.executors}
+            limit = limit or _MAX_GROWTH * max(greatest.values())
+            self.reasons |= {name: _GROWS for name, reached in greatest.items() if reached > limit and name not in self.reasons}
         for executor in host.executors:
-            self.reasons.setdefault(executor.name, "the jitter of its messages grows from hop to hop without a bound")
+            self.reasons.setdefault(executor.name, _GROWS)
+
+    def _greatest(self, executor: HostExecutor) -> Time:
+        """The greatest latency of the callbacks of an executor so far."""
+        found = (self.latencies.get(callback.name) for callback in executor.callbacks)
+        return max((each.worst or 0 for each in found if each is not None), default=0)
 
     def _state(self) -> dict[str, Time | str | None]:
         return {**{name: each.worst for name, each in self.latencies.items()}, **self.reasons}
