@@ -22,7 +22,10 @@ class Callback:
 
 @dataclass
 class Thread:
-    """An executor; kinds: single, batch (static up to iron), first (static since jazzy), events."""
+    """An executor; kinds: single, batch (static up to iron), first (static since jazzy), events.
+
+    A ready set is in the order of registration within a kind, or in any other one at each poll.
+    """
 
     kind: str
     priority: int
@@ -32,6 +35,7 @@ class Thread:
     ready: list[Callback] = field(default_factory=list)
     events: deque = field(default_factory=deque)
     running: list | None = None
+    is_ordered: bool = False
 
     def arrive(self, callback, now, root):
         """Put a message in the queue of a subscription."""
@@ -51,8 +55,8 @@ class Thread:
                 self.due[callback.name] += callback.period
 
     def order(self, random):
-        """The callbacks as a poll lists them: timers first but in static executors; those of a kind in any order."""
-        mixed = random.sample(self.callbacks, len(self.callbacks))
+        """The callbacks as a poll lists them: timers first but in static executors."""
+        mixed = self.callbacks if self.is_ordered else random.sample(self.callbacks, len(self.callbacks))
         return sorted(mixed, key=lambda each: bool(each.period) is (self.kind in ("batch", "first")))
 
     def is_ready(self, callback, now):

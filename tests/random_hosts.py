@@ -1,5 +1,6 @@
 """Random hosts, as systems and as what the player of `played_host` knows."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 from played_host import Callback, Thread
@@ -31,9 +32,17 @@ KINDS = {
 def random_threads(random, kind):
     """One to three executors, with chains through them and topics from outside; at most about 70 % of the core."""
     count = random.choice([1, 1, 2, 3])
-    threads, sources, paths = [Thread(kind, 10 - index, []) for index in range(count)], {}, []
-    left = random.uniform(0.2, 0.7)
-    for number in range(random.randint(1, 4)):
+    threads = [Thread(kind, 10 - index, []) for index in range(count)]
+    callbacks, sources, paths = random_callbacks(random, random.uniform(0.2, 0.7), 4)
+    for each in callbacks:
+        random.choice(threads).callbacks.append(each)
+    return [thread for thread in threads if thread.callbacks], sources, paths
+
+
+def random_callbacks(random, left, chains):
+    """Callbacks of chains with topics from outside, which need so much of a core."""
+    callbacks, sources, paths = [], {}, []
+    for number in range(random.randint(1, chains)):
         period, hops = random.choice([20, 30, 40, 60, 100]), random.choice([1, 1, 2, 3])
         share, names, before = left * random.uniform(0.2, 0.6), [], None
         left -= share
@@ -50,9 +59,35 @@ def random_threads(random, kind):
             else:
                 each.period = period
             before = each
-            random.choice(threads).callbacks.append(each)
+            callbacks.append(each)
         paths.append(names)
-    return [thread for thread in threads if thread.callbacks], sources, paths
+    return callbacks, sources, paths
+
+
+def random_groups(random):
+    """Callbacks of a multi-threaded executor with their groups ("": reentrant), sources and paths, and its number of threads."""
+    threads = random.randint(2, 4)
+    callbacks, sources, paths = random_callbacks(random, random.choice([0.7, 0.5 * threads]), 5)
+    names = random.choice([["a"], ["a", "b"], ["a", "b", "c", "d"], ["", "a"], [""], ["", "a", "b", "c"]])
+    if random.random() < 0.3:
+        groups = {name: path[0] for path in paths for name in path}
+    else:
+        groups = {each.name: random.choice(names) for each in callbacks}
+    return callbacks, groups, sources, paths, threads
+
+
+def arrivals(random, period, jitter, horizon):
+    """Messages that come with a jitter; often all of it at first and then none, so that they come close to each other."""
+    phase, style = random.randrange(period), random.random()
+    times = []
+    for nominal in range(phase, horizon, period):
+        late = jitter if nominal < horizon // 2 and style < 0.5 else 0
+        times.append(nominal + (late if style < 0.5 else random.randint(0, jitter)))
+    return sorted(times)
+
+
+def phases(random, callbacks):
+    return {each.name: random.randrange(each.period) for each in callbacks if each.period}
 
 
 def chain_of(names):
@@ -63,34 +98,58 @@ def chain_of(names):
     )
 
 
-def system_of(threads, sources, paths):
-    latencies = {topic: latency for thread in threads for each in thread.callbacks for topic, latency in each.sends.items()}
+def system_of(threads, sources, paths, release=None):
+    """The system of executors on one core; its distribution is that of `KINDS` if none is given."""
+    kind, usual = KINDS[threads[0].kind]
+    release = release or usual
+    executors = (
+        HostExecutor(
+            name=f"E{index}",
+            computer="pc",
+            kind=kind,
+            thread=HostThread(policy=HostPolicy.FIFO, priority=thread.priority),
+            callbacks=tuple(map(host_callback, thread.callbacks)),
+        )
+        for index, thread in enumerate(threads)
+    )
+    callbacks = [each for thread in threads for each in thread.callbacks]
+    return _system(release, 1, executors, callbacks, sources, paths)
+
+
+def multi_threaded_system_of(callbacks, groups, sources, paths, threads, release):
+    """The system of a multi-threaded executor with a core for each thread."""
+    executor = HostExecutor(
+        name="E",
+        computer="pc",
+        kind=HostExecutorKind.MULTI_THREADED,
+        thread=HostThread(policy=HostPolicy.FIFO, priority=1),
+        threads=threads,
+        callbacks=tuple(
+            replace(host_callback(each), group=groups[each.name], is_reentrant=not groups[each.name]) for each in callbacks
+        ),
+    )
+    return _system(release, threads, [executor], callbacks, sources, paths)
+
+
+def host_callback(each):
+    return HostCallback(
+        name=each.name,
+        kind=HandleKind.TIMER if each.period else HandleKind.SUBSCRIPTION,
+        execution=Span(least=each.best, most=each.worst),
+        period=each.period or None,
+        topic=each.topic or None,
+        depth=each.depth,
+        publishes=tuple(each.sends),
+    )
+
+
+def _system(release, cores, executors, callbacks, sources, paths):
+    latencies = {topic: latency for each in callbacks for topic, latency in each.sends.items()}
     chains = [chain_of(path) for path in paths]
-    kind, release = KINDS[threads[0].kind]
     host = Host(
         release=release,
-        computers=(HostComputer(name="pc", cores=1),),
-        executors=tuple(
-            HostExecutor(
-                name=f"E{index}",
-                computer="pc",
-                kind=kind,
-                thread=HostThread(policy=HostPolicy.FIFO, priority=thread.priority),
-                callbacks=tuple(
-                    HostCallback(
-                        name=each.name,
-                        kind=HandleKind.TIMER if each.period else HandleKind.SUBSCRIPTION,
-                        execution=Span(least=each.best, most=each.worst),
-                        period=each.period or None,
-                        topic=each.topic or None,
-                        depth=each.depth,
-                        publishes=tuple(each.sends),
-                    )
-                    for each in thread.callbacks
-                ),
-            )
-            for index, thread in enumerate(threads)
-        ),
+        computers=(HostComputer(name="pc", cores=cores),),
+        executors=tuple(executors),
         topics=(
             *(HostTopic(name=name, latency=Span(least=time, most=time)) for name, time in latencies.items()),
             *(HostTopic(name=name, interval=interval, jitter=jitter) for name, (interval, jitter) in sources.items()),

@@ -88,6 +88,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "Building": partial(_printed, "build.py"),
     "Response times": partial(_printed, "response_times.py"),
     "Event chains": partial(_printed, "chains.py"),
+    "Hosts of ROS 2": partial(_printed, "hosts.py"),
     "Checking": partial(_printed, "check.py"),
     "From measurements to better designs": partial(_printed, "closed_loop.py"),
 }

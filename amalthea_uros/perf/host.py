@@ -75,10 +75,10 @@ class HostCallback(Named):
 
     Attributes
     ----------
-    kind : a timer or a subscription
+    kind : a timer, a subscription, a service or a client
     execution : bounds of its execution time, without preemption
     period : of a timer
-    topic, depth : of a subscription, and how many messages its queue keeps (KEEP_LAST)
+    topic, depth : whose messages call it, and how many of them its queue keeps (KEEP_LAST); requests and responses of a service are messages
     publishes : topics, at its end
     reads, writes : variables, at its start and at its end
     group : the callback group, unique in the host
@@ -112,6 +112,20 @@ class HostExecutor(Named):
     thread: HostThread = field(default_factory=HostThread)
     threads: int = 1
     callbacks: tuple[HostCallback, ...] = ()
+
+
+    def rank(self, callback: HostCallback, release: RosRelease) -> int:
+        """The place of the kind of a callback in a ready set (rclcpp `allocator_memory_strategy.hpp`, `wait_result.hpp`).
+
+        Static executors call subscriptions first; from jazzy on, they call clients before services.
+        """
+        first, second = HandleKind.TIMER, HandleKind.SUBSCRIPTION
+        third, fourth = HandleKind.SERVICE, HandleKind.CLIENT
+        if self.kind is HostExecutorKind.STATIC:
+            first, second = second, first
+            if not release.keeps_batches:
+                third, fourth = fourth, third
+        return (first, second, third, fourth).index(callback.kind)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -115,6 +115,8 @@ class HostCallbackSection(DescriptionSection):
     """Variables that it writes at its end."""
     publishes: list[Name] = Field(default_factory=list)
     """Topics that it publishes at its end."""
+    calls: list[Name] = Field(default_factory=list)
+    """Services of the host that it calls at its end, without waiting for the response."""
     group: Name | None = None
     """Callback group of its node; default: that of the node itself, which is mutually exclusive."""
 
@@ -133,6 +135,23 @@ class HostTimer(HostCallbackSection):
 
     period: Duration
     """Its period."""
+
+
+class HostServiceCallback(HostCallbackSection):
+    """What a service and a client of the host have in common."""
+
+    service: Name
+    """Name of the service."""
+    depth: Count = 10
+    """Depth of its queue (KEEP_LAST); default: that of rclcpp."""
+
+
+class HostService(HostServiceCallback):
+    """A service of the host; its response is sent at the end of the callback."""
+
+
+class HostClient(HostServiceCallback):
+    """A client of the host: the callback of its responses."""
 
 
 class CallbackGroupSection(DescriptionSection):
@@ -157,6 +176,10 @@ class HostNodeSection(DescriptionSection):
     """Its subscriptions."""
     timers: list[HostTimer] = Field(default_factory=list)
     """Its timers."""
+    services: list[HostService] = Field(default_factory=list)
+    """Its services."""
+    clients: list[HostClient] = Field(default_factory=list)
+    """Its clients."""
 
 
 class HostTopicSection(DescriptionSection):

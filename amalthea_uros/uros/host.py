@@ -70,6 +70,33 @@ class _HostBuilder:
                         "callback group", callback.group, groups, callback.location("group"), owner=f"node {node.name!r}"
                     )
         self._check_sources(description)
+        self._check_services()
+
+    def _check_services(self) -> None:
+        """Report calls that no service of the host answers, and responses of which it is not described who gets them."""
+        nodes, problems = self.section.nodes, self.problems
+        services = [(node, each) for node in nodes for each in node.services]
+        clients = [(node, each) for node in nodes for each in node.clients]
+        problems.unique("service of the host", ((each.service, each.location("service")) for _, each in services))
+        names = {each.service for _, each in services}
+        callers = [(node, each, service) for node in nodes for each in _callbacks(node) for service in each.calls]
+        for _, caller, service in callers:
+            if service not in names:
+                problems.undefined("service of the host", service, names, caller.location("calls"))
+        for node, client in clients:
+            others = {other.name for other, _, service in callers if service == client.service and other is not node}
+            others |= {other.name for other, each in clients if each.service == client.service and other is not node}
+            if client.service not in names:
+                problems.undefined("service of the host", client.service, names, client.location("service"))
+            elif others:
+                message = f"the service {client.service!r} is called in the nodes {', '.join(sorted({node.name, *others}))}"
+                problems.error(
+                    "APP003",
+                    f"{message}, but which response is for which of them is not covered",
+                    client.location("service"),
+                    "Describe calls and the client of a service in one node.",
+                )
+        self.problems.unique("client of a service", ((each.service, each.location("service")) for _, each in clients))
 
     def _check_sources(self, description: Description) -> None:
         """Report topics whose rate is stated although it follows from what publishes them."""
@@ -112,15 +139,14 @@ class _HostBuilder:
     def _of_node(self, node: spec.HostNodeSection) -> Iterator[HostCallback]:
         reentrant = {group.name for group in node.groups if group.type == "reentrant"}
         for section in _callbacks(node):
-            is_timer = isinstance(section, spec.HostTimer)
             yield HostCallback(
                 name=section.name,
-                kind=HandleKind.TIMER if is_timer else HandleKind.SUBSCRIPTION,
+                kind=_kind(section),
                 execution=self._execution(section.execution_time),
                 period=section.period if isinstance(section, spec.HostTimer) else None,
-                topic=plain_topic(section.topic) if isinstance(section, spec.HostSubscription) else None,
-                depth=section.depth if isinstance(section, spec.HostSubscription) else 10,
-                publishes=tuple(map(plain_topic, section.publishes)),
+                topic=_topic_of(section),
+                depth=10 if isinstance(section, spec.HostTimer) else section.depth,
+                publishes=tuple(_published(section)),
                 reads=tuple(section.reads),
                 writes=tuple(section.writes),
                 group=f"{node.name}/{section.group or ''}",
@@ -145,8 +171,8 @@ class _HostBuilder:
         """The topics that are described, and those that only callbacks name."""
         stated = {plain_topic(each.topic): each for each in self.section.topics}
         callbacks = [callback for node in self.section.nodes for callback in _callbacks(node)]
-        named = [plain_topic(topic) for each in callbacks for topic in each.publishes]
-        named += [plain_topic(each.topic) for each in callbacks if isinstance(each, spec.HostSubscription)]
+        named = [topic for each in callbacks for topic in _published(each)]
+        named += [topic for each in callbacks if (topic := _topic_of(each)) is not None]
         for name in dict.fromkeys((*stated, *named)):
             topic = stated.get(name)
             latency = topic.latency if topic is not None and topic.latency is not None else self.section.latency
@@ -159,9 +185,45 @@ class _HostBuilder:
             )
 
 
-def _callbacks(node: spec.HostNodeSection) -> list[spec.HostSubscription | spec.HostTimer]:
-    """The callbacks of a node; timers come before subscriptions in a ready set anyway."""
-    return [*node.timers, *node.subscriptions]
+_Callback = spec.HostSubscription | spec.HostTimer | spec.HostService | spec.HostClient
+
+
+def _callbacks(node: spec.HostNodeSection) -> list[_Callback]:
+    """The callbacks of a node; kinds have an order of their own in a ready set anyway."""
+    return [*node.timers, *node.subscriptions, *node.services, *node.clients]
+
+
+def _kind(section: _Callback) -> HandleKind:
+    if isinstance(section, spec.HostTimer):
+        return HandleKind.TIMER
+    if isinstance(section, spec.HostService):
+        return HandleKind.SERVICE
+    return HandleKind.CLIENT if isinstance(section, spec.HostClient) else HandleKind.SUBSCRIPTION
+
+
+def _topic_of(section: _Callback) -> str | None:
+    """The topic whose messages call a callback; None of a timer."""
+    if isinstance(section, spec.HostService):
+        return _request(section.service)
+    if isinstance(section, spec.HostClient):
+        return _response(section.service)
+    return plain_topic(section.topic) if isinstance(section, spec.HostSubscription) else None
+
+
+def _published(section: _Callback) -> Iterator[str]:
+    """The topics that a callback publishes at its end, with its requests and its response."""
+    yield from map(plain_topic, section.publishes)
+    yield from map(_request, section.calls)
+    if isinstance(section, spec.HostService):
+        yield _response(section.service)
+
+
+def _request(service: str) -> str:
+    return f"{plain_topic(service)}/request"
+
+
+def _response(service: str) -> str:
+    return f"{plain_topic(service)}/response"
 
 
 def _thread(section: spec.ThreadSection) -> HostThread:

@@ -3,6 +3,7 @@
 from random import Random
 
 import chains
+import hosts
 import response_times
 
 from amalthea_uros.analyze.system import analyze_system
@@ -21,3 +22,11 @@ def test_the_tasks_with_chains():
     result = analyze_system(chains.whole_system(tasks[:5], [[0, 1, 2]]))
     (chain,) = result.chains
     assert (chain.name, len(result.processes)) == ("C0", 5)
+
+
+def test_the_host():
+    system = hosts.large_host(60)
+    assert (len(system.host.callbacks), len(system.host.executors), system.host.computers[0].cores) == (60, 8, 4)
+    chains_of_host = analyze_system(system).chains
+    assert len(chains_of_host) == 20
+    assert all(chain.worst is not None for chain in chains_of_host)

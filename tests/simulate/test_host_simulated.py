@@ -32,6 +32,7 @@ from amalthea_uros.units import SECOND
 from amalthea_uros.uros.described import describe_text
 
 ROBOT = re.search(r'```yaml title="robot.yaml"\n(.*?)```', (ROOT / "docs" / "ros2-host.md").read_text(), re.DOTALL)[1]
+SAMPLE = (ROOT / "samples" / "robot-with-host.yaml").read_text()
 
 
 class Fixed:
@@ -112,19 +113,20 @@ def test_machine_code_has_the_same_results(monkeypatch):
     assert results[0] == results[1]
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_robot_with_its_host_is_within_its_bounds(seed):
-    analysis = analyze(ROBOT)
-    simulation = simulate_system(describe_text(ROBOT).assembly.system, Options(duration=20 * SECOND, seed=seed))
+@pytest.mark.parametrize(("text", "seed"), [(ROBOT, 1), (ROBOT, 2), (SAMPLE, 1)], ids=["robot-1", "robot-2", "sample"])
+def test_a_robot_with_its_host_is_within_its_bounds(text, seed):
+    analysis = analyze(text)
+    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=20 * SECOND, seed=seed))
     for bounds, seen in ((analysis.executors, simulation.executors), (analysis.host, simulation.host)):
         for handle in (handle for executor in seen for handle in executor.handles):
             bound = next(each.handles[handle.name] for each in bounds if handle.name in each.handles.names)
             assert handle.calls > 100
             assert handle.response_time.max <= bound.response.worst
-    (chain,) = simulation.chains
+    chain, *others = simulation.chains
     # Each message of the controller comes back.
     assert chain.observations > 190
     assert chain.quantities[ChainQuantity.REDUCED_REACTION_TIME].max <= analysis.chains[chain.name].worst
+    assert all("several threads" in other.reason for other in others)
 
 
 def test_several_publishers_of_the_host_send_what_the_controller_gets():

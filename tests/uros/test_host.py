@@ -6,13 +6,14 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-from amalthea_uros import analyze, describe
+from amalthea_uros import analyze, describe, simulate
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import parse_time
 from amalthea_uros.uros.described import describe_text
 from amalthea_uros.xmi.load import load
@@ -169,3 +170,53 @@ def test_a_host_can_be_described_without_callbacks_of_a_controller(tmp_path):
         )
     )
     assert len(describe(path).system.host.executors) == 2
+
+
+SERVICES = """
+amuros: 1
+name: services
+hardware: {platform: host}
+host:
+  ros: humble
+  computers: [{name: pc, cores: 2}]
+  latency: 0 ms
+  executors:
+    - {name: E, thread: {policy: fifo, priority: 1, core: 0}}
+    - {name: F, thread: {policy: fifo, priority: 1, core: 1}}
+  nodes:
+    - name: user
+      executor: E
+      timers: [{name: Ask, period: 100 ms, execution_time: 3 ms, calls: [plan]}]
+      clients: [{name: On_Plan, service: plan, execution_time: 2 ms}]
+    - name: planner
+      executor: F
+      services: [{name: Plan, service: plan, execution_time: 20 ms}]
+chains: [{name: asked, path: [Ask, Plan, On_Plan], reaction: 40 ms}]
+"""
+
+
+def test_requests_and_responses_of_a_service_are_messages():
+    """Ask ends at 5 ms, if a response has just begun, Plan after 20 ms more, and On_Plan takes 2 ms, after 3 ms of Ask."""
+    result = analyze(SERVICES)
+    assert [[each.kind for each in executor.handles] for executor in result.host] == [
+        [HandleKind.TIMER, HandleKind.CLIENT],
+        [HandleKind.SERVICE],
+    ]
+    assert result.chains["asked"].worst == parse_time("5 ms") + parse_time("20 ms") + parse_time("5 ms")
+    (chain,) = simulate(SERVICES, "2 s").chains
+    assert chain.observations > 15
+    assert chain.quantities[ChainQuantity.REDUCED_REACTION_TIME].max == parse_time("25 ms")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("calls: [plan]", "calls: [plans]", "undefined service of the host 'plans'"),
+        ("{name: On_Plan, service: plan", "{name: On_Plan, service: plane", "undefined service of the host 'plane'"),
+        ("execution_time: 20 ms}", "execution_time: 20 ms, calls: [plan]}", "is called in the nodes planner, user"),
+    ],
+)
+def test_calls_without_a_service_and_responses_for_several_nodes_are_refused(old, new, message):
+    with pytest.raises(ReadError) as refused:
+        describe_text(SERVICES.replace(old, new))
+    assert message in str([each.message for each in refused.value.findings])

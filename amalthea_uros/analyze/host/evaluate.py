@@ -7,6 +7,7 @@ from dataclasses import replace
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.host import starvation_free
 from amalthea_uros.analyze.host.findings import add_findings
+from amalthea_uros.analyze.host.multi_threaded import in_groups
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.analyze.host.topics import HostTopics
@@ -15,7 +16,6 @@ from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Loss, TimePart
-from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.host import Host, HostCallback, HostExecutor, HostExecutorKind, RosRelease
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.response import Claim, Response
@@ -47,8 +47,6 @@ def _result(executor: HostExecutor, host: Host, releases: HostReleases) -> Execu
 def _responses(executor: HostExecutor, host: Host, releases: HostReleases) -> dict[str, Response]:
     """The response times of all callbacks, from their own release."""
     known = {callback.name: _from_release(callback, releases) for callback in executor.callbacks}
-    if executor.kind is HostExecutorKind.MULTI_THREADED:
-        return known
     for improved in _improved(executor, host, releases, known):
         for name, response in improved.items():
             if response.worst is not None and response.worst < (known[name].worst or 0):
@@ -67,14 +65,16 @@ def _improved(
     executor: HostExecutor, host: Host, releases: HostReleases, known: dict[str, Response]
 ) -> list[dict[str, Response]]:
     """The results of the methods that hold for the kind of the executor and the distribution."""
+    if executor.kind is HostExecutorKind.MULTI_THREADED:
+        has_threads = releases.has_thread_for_each_group(executor)
+        return [in_groups(executor, releases.released(executor))] if has_threads else []
     supply, higher = releases.processors[executor.name].supply, releases.preempting(executor)
-    tasks, is_batch = _in_ready_set(executor, releases), executor.kind is HostExecutorKind.SINGLE_THREADED
+    tasks, is_batch = _in_ready_set(executor, host.release, releases), executor.kind is HostExecutorKind.SINGLE_THREADED
     if executor.kind is HostExecutorKind.STATIC:
         is_batch = host.release.keeps_batches
         if not is_batch and not higher and supply is FULL:
-            return [
-                _non_preemptive(tasks, frozenset(each.name for each in executor.callbacks if each.kind is HandleKind.TIMER))
-            ]
+            ranks = {each.name: executor.rank(each, host.release) for each in executor.callbacks}
+            return [_non_preemptive(tasks, ranks)]
     if is_batch and not higher:
         return [dict(starvation_free.improved(tasks, known, _is_order_known(executor, host.release), supply))]
     if executor.kind is HostExecutorKind.EVENTS:
@@ -90,22 +90,21 @@ def _others(task: AnalysedTask, tasks: list[AnalysedTask]) -> list[AnalysedTask]
     return [other for other in tasks if other is not task]
 
 
-def _non_preemptive(tasks: list[AnalysedTask], timers: frozenset[str]) -> dict[str, Response]:
-    """The static executor since jazzy: one callback for each wait, subscriptions first, in an order of addresses that is not known."""
+def _non_preemptive(tasks: list[AnalysedTask], ranks: dict[str, int]) -> dict[str, Response]:
+    """The static executor since jazzy: one callback for each wait by kind, in an order of addresses that is not known."""
     responses = {}
     for task in tasks:
         others = _others(task, tasks)
-        higher = [other for other in others if task.name in timers or other.name not in timers]
+        higher = [other for other in others if ranks[other.name] <= ranks[task.name]]
         blocking = max((other.demand.worst - 1 for other in others if other not in higher), default=0)
         responses[task.name] = non_preemptive.response_time(task, higher, blocking)
     return responses
 
 
-def _in_ready_set(executor: HostExecutor, releases: HostReleases) -> list[AnalysedTask]:
-    """The callbacks in the order of the ready set: timers first, but last in the static executor; then that of registration."""
+def _in_ready_set(executor: HostExecutor, release: RosRelease, releases: HostReleases) -> list[AnalysedTask]:
+    """The callbacks in the order of the ready set: by kind, then in that of registration."""
     by_name = {task.name: task for task in releases.released(executor)}
-    timers_first = executor.kind is not HostExecutorKind.STATIC
-    ordered = sorted(executor.callbacks, key=lambda callback: (callback.kind is HandleKind.TIMER) is not timers_first)
+    ordered = sorted(executor.callbacks, key=lambda callback: executor.rank(callback, release))
     return [by_name[callback.name] for callback in ordered]
 
 

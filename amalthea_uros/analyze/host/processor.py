@@ -27,11 +27,13 @@ class HostProcessor:
     ----------
     higher : executors whose callbacks can preempt it
     reservations : threads of SCHED_DEADLINE that can preempt it, each as a task
+    cores : on which its threads run; nothing can preempt them if there are several
     """
 
     higher: tuple[HostExecutor, ...] = ()
     reservations: tuple[AnalysedTask, ...] = ()
     supply: Supply = FULL
+    cores: int = 1
 
 
 def processor_of(executor: HostExecutor, host: Host) -> HostProcessor:
@@ -50,19 +52,16 @@ def processor_of(executor: HostExecutor, host: Host) -> HostProcessor:
     neighbours = [other for other in host.executors if other.computer == executor.computer and other.name != name]
     if thread.policy is HostPolicy.DEADLINE:
         return _reserved(executor, neighbours, host)
-    needed = executor.threads if executor.kind is HostExecutorKind.MULTI_THREADED else 1
     cores = set(thread.cores) or set(range(_cores(executor, host)))
-    if needed == 1 and len(cores) > 1:
+    if executor.kind is not HostExecutorKind.MULTI_THREADED and len(cores) > 1:
         raise UnknownError(f"the thread of {name!r} can run on several cores; set 'core' of its 'thread'")
-    if len(cores) < needed:
-        raise UnknownError(f"{name!r} has more threads than cores, which no published method covers")
     higher = tuple(other for other in neighbours if _can_preempt(other, executor, cores))
     reservations = tuple(map(_reservation, filter(_is_reserved, neighbours)))
-    if needed > 1 and (higher or reservations):
+    if len(cores) > 1 and (higher or reservations):
         raise UnknownError(
             f"other threads can preempt those of {name!r}, which no published method covers; give it cores of its own"
         )
-    return HostProcessor(higher, reservations)
+    return HostProcessor(higher, reservations, cores=len(cores))
 
 
 def _cores(executor: HostExecutor, host: Host) -> int:

@@ -7,10 +7,11 @@ takes time, the jitter is what the times before vary (K. Richter 2005). It is fo
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.analyze.host import polled, reentrant
+from amalthea_uros.analyze.host import polled
+from amalthea_uros.analyze.host.multi_threaded import SharedThreads, has_thread_for_each_group, in_groups
 from amalthea_uros.analyze.host.processor import HostProcessor, processor_of
 from amalthea_uros.analyze.host.topics import HostTopics, delayed
 from amalthea_uros.analyze.response_times.task import AnalysedTask
@@ -23,8 +24,9 @@ from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents,
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
-#: Jitter that still grows after so many passes is considered unbounded.
-_MAX_PASSES = 200
+#: Jitter that still grows after so many passes is considered unbounded, and so is a latency of so many times that of the first pass.
+_MAX_PASSES, _MAX_GROWTH = 200, 50
+_GROWS = "the jitter of its messages grows from hop to hop without a bound"
 
 
 @dataclass
@@ -45,6 +47,24 @@ class HostReleases:
 
     def solve(self) -> HostReleases:
         """Find the least fixed point, executor by executor; what has none is unknown."""
+        self._solve_all()
+        overloaded = {
+            executor.name
+            for executor in self.topics.host.executors
+            if executor.name in self.reasons and self.has_thread_for_each_group(executor)
+        }
+        if not overloaded:
+            return self
+        by_group = HostReleases(replace(self.topics, by_group=frozenset(overloaded)))
+        by_group._solve_all()
+        return by_group
+
+    def has_thread_for_each_group(self, executor: HostExecutor) -> bool:
+        """Whether each callback group of an executor has a thread of its own."""
+        processor = self.processors.get(executor.name)
+        return processor is not None and has_thread_for_each_group(executor, processor.cores)
+
+    def _solve_all(self) -> None:
         host = self.topics.host
         for circle in self.topics.circles():
             for name in circle:
@@ -55,16 +75,24 @@ class HostReleases:
                 self.processors[executor.name] = processor_of(executor, host)
             except UnknownError as error:
                 self.reasons.setdefault(executor.name, str(error))
+        limit = 0
         for _ in range(_MAX_PASSES):
             before = self._state()
             for executor in host.executors:
                 if executor.name not in self.reasons:
                     self._solve(executor)
             if self._state() == before:
-                return self
+                return
+            greatest = {executor.name: self._greatest(executor) for executor in host.executors}
+            limit = limit or _MAX_GROWTH * max(greatest.values())
+            self.reasons |= {name: _GROWS for name, reached in greatest.items() if reached > limit and name not in self.reasons}
         for executor in host.executors:
-            self.reasons.setdefault(executor.name, "the jitter of its messages grows from hop to hop without a bound")
-        return self
+            self.reasons.setdefault(executor.name, _GROWS)
+
+    def _greatest(self, executor: HostExecutor) -> Time:
+        """The greatest latency of the callbacks of an executor so far."""
+        found = (self.latencies.get(callback.name) for callback in executor.callbacks)
+        return max((each.worst or 0 for each in found if each is not None), default=0)
 
     def _state(self) -> dict[str, Time | str | None]:
         return {**{name: each.worst for name, each in self.latencies.items()}, **self.reasons}
@@ -73,7 +101,7 @@ class HostReleases:
         """The latencies of an executor for the present activations."""
         try:
             if executor.kind is HostExecutorKind.MULTI_THREADED:
-                self.latencies |= self._of_threads(executor)
+                self._solve_threads(executor)
                 return
             processor, tasks = self.processors[executor.name], self.tasks(executor)
             higher = self.preempting(executor)
@@ -85,6 +113,18 @@ class HostReleases:
                     raise UnknownError(response.reason)
         except UnknownError as error:
             self.reasons[executor.name] = str(error)
+
+    def _solve_threads(self, executor: HostExecutor) -> None:
+        tasks, cores = self.tasks(executor), self.processors[executor.name].cores
+        if executor.name not in self.topics.by_group:
+            routes = [self.topics.route(callback) for callback in executor.callbacks]
+            self.latencies |= SharedThreads(executor, cores, routes, tasks, self.preempting(executor)).latencies()
+            return
+        found = in_groups(executor, tasks)
+        self.latencies |= found
+        for response in found.values():
+            if response.worst is None:
+                raise UnknownError(response.reason)
 
     def preempting(self, executor: HostExecutor) -> list[AnalysedTask]:
         """Return the tasks that can preempt the thread of an executor."""
@@ -157,34 +197,3 @@ class HostReleases:
         if latency.most is None:
             raise UnknownError(f"the latency of the topic {topic!r} is not specified")
         return aggregated(tuple(delayed(each, latency.most - latency.least) for each in sources))
-
-    def _of_threads(self, executor: HostExecutor) -> Mapping[str, Response]:
-        """The latencies in a multi-threaded executor.
-
-        Raises
-        ------
-        UnknownError : the theorem does not cover it.
-        """
-        if not all(callback.is_reentrant for callback in executor.callbacks):
-            raise UnknownError(
-                "no published method covers groups that exclude each other in a multi-threaded executor; their callbacks can starve"
-            )
-        routes = [self.topics.route(callback) for callback in executor.callbacks]
-        passed = {each.name for route in routes for each in route[:-1]}
-        ends = [route for route in routes if route[-1].name not in passed]
-        if sum(map(len, ends)) > len(executor.callbacks):
-            raise UnknownError("no published method covers chains that branch in a multi-threaded executor")
-        chains = [self._chain(route) for route in ends]
-        latencies: dict[str, Response] = {}
-        for route, response in zip(ends, reentrant.latencies(chains, executor.threads), strict=True):
-            if response.worst is None:
-                raise UnknownError(response.reason)
-            latencies |= {callback.name: response for callback in route}
-        return latencies
-
-    def _chain(self, route: tuple[HostCallback, ...]) -> reentrant.ReentrantChain:
-        events = self._entering(route[0])
-        if not isinstance(events, PeriodicEvents) or events.jitter:
-            raise UnknownError(f"no published method covers the jitter of {route[0].name!r} in a multi-threaded executor")
-        demands = [self._task(each, events).demand.worst for each in route]
-        return reentrant.ReentrantChain(events.period, sum(demands), demands[-1])

@@ -30,10 +30,12 @@ class HostTopics:
     Attributes
     ----------
     solved : the controller
+    by_group : multi-threaded executors of which each callback group is analysed like an executor
     """
 
     host: Host
     solved: SolvedSystem
+    by_group: frozenset[str] = frozenset()
 
     @cached_property
     def executor_of(self) -> Mapping[str, HostExecutor]:
@@ -82,8 +84,13 @@ class HostTopics:
         if topic is None or self.latency(topic).most != 0 or self.transmissions(topic, Direction.TO_AGENT):
             return None
         publishers = self.publishers(topic)
-        is_alone = len(publishers) == 1 and self.executor_of[publishers[0].name] == self.executor_of[callback.name]
+        is_alone = len(publishers) == 1 and self._is_served_with(publishers[0], callback)
         return publishers[0] if is_alone else None
+
+    def _is_served_with(self, one: HostCallback, other: HostCallback) -> bool:
+        executor = self.executor_of[one.name]
+        is_in_executor = executor == self.executor_of[other.name]
+        return is_in_executor and (executor.name not in self.by_group or one.group == other.group)
 
     def route(self, callback: HostCallback) -> tuple[HostCallback, ...]:
         """The callbacks of its executor through which a release reaches a callback, itself included.

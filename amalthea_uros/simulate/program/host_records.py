@@ -153,9 +153,9 @@ class HostRecords:
         return record
 
     def _ready_order(self, executor: HostExecutor) -> Sequence[HostCallback]:
-        """The callbacks in the order of a ready set: timers first, in a static executor last (rclcpp of the distributions)."""
+        """The callbacks in the order of a ready set: by kind, then as the distribution orders them."""
         release = self.resources.context.system.host.release
-        mixed, is_static = list(executor.callbacks), executor.kind is HostExecutorKind.STATIC
+        mixed = list(executor.callbacks)
         in_groups: dict[str, list[HostCallback]] = {}
         for callback in mixed:
             key = callback.group if release.keeps_batches else callback.name
@@ -166,7 +166,7 @@ class HostRecords:
             self.resources.context.notes.assume(_ORDER if is_random else _REGISTERED)
             keys = sorted(in_groups, key=self._address) if is_random else list(in_groups)
             mixed = [callback for key in keys for callback in in_groups[key]]
-        return sorted(mixed, key=lambda each: (each.kind is HandleKind.TIMER) is is_static)
+        return sorted(mixed, key=lambda each: executor.rank(each, release))
 
     def _address(self, name: str) -> int:
         return self.resources.random_phase(f"address {name}")

@@ -4,20 +4,24 @@ from random import Random
 
 import pytest
 from effort import every
+from played_groups import Executor
+from played_groups import play as play_groups
 from played_host import Thread, play
-from random_hosts import KINDS, random_threads, system_of
+from random_hosts import KINDS, arrivals, multi_threaded_system_of, phases, random_groups, random_threads, system_of
 
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.host import RosRelease
 
 
-def arrivals(random, period, jitter, horizon):
-    """Messages that come with a jitter; often all of it at first and then none, so that they come close to each other."""
-    phase, style = random.randrange(period), random.random()
-    times = []
-    for nominal in range(phase, horizon, period):
-        late = jitter if nominal < horizon // 2 and style < 0.5 else 0
-        times.append(nominal + (late if style < 0.5 else random.randint(0, jitter)))
-    return sorted(times)
+def check(analysis, paths, own, whole):
+    """No time from a release, and none from that of the first callback of a chain, exceeds its bound."""
+    responses = {handle.name: handle for executor in analysis.host for handle in executor.handles}
+    for name, time in own.items():
+        worst = responses[name].response.worst
+        assert worst is None or time <= worst, name
+    for name in (path[-1] for path in paths):
+        bound = analysis.chains[name].worst_if_not_lost
+        assert responses[name].lost or bound is None or whole[name] <= bound, name
 
 
 @pytest.mark.parametrize(("kind", "seed"), every(4, [(kind, seed) for kind in KINDS for seed in range(120)]))
@@ -25,20 +29,24 @@ def test_no_schedule_exceeds_a_bound(kind, seed):
     random = Random(f"{kind} {seed}")
     threads, sources, paths = random_threads(random, kind)
     analysis = analyze_system(system_of(threads, sources, paths))
-    responses = {handle.name: handle for executor in analysis.host for handle in executor.handles}
-    latencies = {path[-1]: analysis.chains[path[-1]].worst_if_not_lost for path in paths}
     for _ in range(4):
         fresh = [Thread(each.kind, each.priority, each.callbacks) for each in threads]
         for thread in fresh:
-            thread.due = {each.name: random.randrange(each.period) for each in thread.callbacks if each.period}
+            thread.due = phases(random, thread.callbacks)
         outside = {topic: arrivals(random, *rule, 1500) for topic, rule in sources.items()}
-        own, whole = play(fresh, outside, 1500, random)
-        for name, time in own.items():
-            worst = responses[name].response.worst
-            assert worst is None or time <= worst, name
-        for name, bound in latencies.items():
-            if responses[name].lost is None:
-                assert bound is None or whole[name] <= bound, name
+        check(analysis, paths, *play(fresh, outside, 1500, random))
+
+
+@pytest.mark.parametrize("seed", every(8, range(240)))
+def test_no_schedule_of_several_threads_exceeds_a_bound(seed):
+    random = Random(f"groups {seed}")
+    callbacks, groups, sources, paths, threads = random_groups(random)
+    release = random.choice([RosRelease.HUMBLE, RosRelease.JAZZY])
+    analysis = analyze_system(multi_threaded_system_of(callbacks, groups, sources, paths, threads, release))
+    for _ in range(4):
+        executor = Executor(callbacks, groups, threads, release is RosRelease.JAZZY, phases(random, callbacks))
+        outside = {topic: arrivals(random, *rule, 1500) for topic, rule in sources.items()}
+        check(analysis, paths, *play_groups(executor, outside, 1500, random))
 
 
 def test_most_bounds_are_known():

@@ -1,0 +1,145 @@
+"""Looks for response times and latencies of random hosts that are beyond their bounds.
+
+`python -m opponent.hunt_hosts --seeds 0..10000 --jobs 2` with `tests` and `tools` on the path, e.g. `PYTHONPATH=.:tests:tools` in the folder of
+the project. Each seed is a random host with one kind of executor and a distribution for which it exists; it is analysed, and
+played tick by tick with several phases by players that share no code with the product. At the end it prints, for each kind and rules of distributions, the
+number of systems, the share of callbacks with a bound, and the median and the maximum of bound/observed, and each value beyond a bound with its seed.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from random import Random
+from statistics import median
+
+from played_groups import Executor
+from played_groups import play as play_groups
+from played_host import Thread, play
+from random_hosts import arrivals, multi_threaded_system_of, phases, random_groups, random_threads, system_of
+
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.host import RosRelease
+from amalthea_uros.perf.system import System
+
+EARLY = tuple(each for each in RosRelease if each.keeps_batches)
+LATE = tuple(each for each in RosRelease if not each.keeps_batches)
+#: The kinds of executors with the distributions whose rules are the same.
+RULES = {
+    "single-threaded, foxy to iron": ("single", EARLY),
+    "single-threaded, jazzy and rolling": ("single", LATE),
+    "static, foxy to iron": ("batch", EARLY),
+    "static, jazzy and rolling": ("first", LATE),
+    "events": ("events", tuple(RosRelease)),
+    "multi-threaded, foxy to iron": ("multi", EARLY),
+    "multi-threaded, jazzy and rolling": ("multi", LATE),
+}
+HORIZON, PLAYS = 800, 3
+
+Times = dict[str, int]
+
+
+@dataclass
+class Hunted:
+    """What is found about a random host."""
+
+    rules: str
+    known: int = 0
+    total: int = 0
+    ratios: list[float] = field(default_factory=list)
+    false: list[str] = field(default_factory=list)
+
+
+def hunt(seed: int) -> Hunted:
+    """Bounds and played times of the host of a seed."""
+    rules = list(RULES)[seed % len(RULES)]
+    kind, releases = RULES[rules]
+    random = Random(f"hunt {seed}")
+    release = random.choice(releases)
+    system, paths, played = _of_threads(random, release) if kind == "multi" else _of_one_thread(random, kind, release)
+    return _compared(Hunted(rules), system, paths, played, seed)
+
+
+def _of_one_thread(random: Random, kind: str, release: RosRelease) -> tuple[System, list[list[str]], Iterator[tuple[Times, Times]]]:
+    threads, sources, paths = random_threads(random, kind)
+
+    def played() -> Iterator[tuple[Times, Times]]:
+        for _ in range(PLAYS):
+            is_ordered = release.keeps_batches
+            fresh = [Thread(each.kind, each.priority, each.callbacks, is_ordered=is_ordered) for each in threads]
+            for thread in fresh:
+                thread.due = phases(random, thread.callbacks)
+            outside = {topic: arrivals(random, *rule, HORIZON) for topic, rule in sources.items()}
+            yield play(fresh, outside, HORIZON, random)
+
+    return system_of(threads, sources, paths, release), paths, played()
+
+
+def _of_threads(random: Random, release: RosRelease) -> tuple[System, list[list[str]], Iterator[tuple[Times, Times]]]:
+    callbacks, groups, sources, paths, threads = random_groups(random)
+
+    def played() -> Iterator[tuple[Times, Times]]:
+        for _ in range(PLAYS):
+            executor = Executor(callbacks, groups, threads, not release.keeps_batches, phases(random, callbacks))
+            outside = {topic: arrivals(random, *rule, HORIZON) for topic, rule in sources.items()}
+            yield play_groups(executor, outside, HORIZON, random)
+
+    return multi_threaded_system_of(callbacks, groups, sources, paths, threads, release), paths, played()
+
+
+def _compared(
+    found: Hunted, system: System, paths: list[list[str]], played: Iterator[tuple[Times, Times]], seed: int
+) -> Hunted:
+    analysis = analyze_system(system)
+    handles = {handle.name: handle for executor in analysis.host for handle in executor.handles}
+    own, whole = defaultdict[str, int](int), defaultdict[str, int](int)
+    for responses, latencies in played:
+        for most, times in ((own, responses), (whole, latencies)):
+            for name, time in times.items():
+                most[name] = max(most[name], time)
+    for name, handle in handles.items():
+        found.total += 1
+        worst = handle.response.worst
+        if worst is None or not own[name]:
+            continue
+        found.known += 1
+        found.ratios.append(worst / own[name])
+        if worst < own[name]:
+            found.false.append(f"seed {seed}: {name} takes {own[name]}, and {worst} at most ({handle.response.method})")
+    for name in (path[-1] for path in paths):
+        bound = analysis.chains[name].worst_if_not_lost
+        if bound is not None and not handles[name].lost and whole[name] > bound:
+            found.false.append(f"seed {seed}: the chain to {name} takes {whole[name]}, and {bound} at most")
+    return found
+
+
+def main() -> None:
+    """Hunt in a range of seeds."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", default="0..10000", help="first..end")
+    parser.add_argument("--jobs", type=int, default=2)
+    parsed = parser.parse_args()
+    first, end = map(int, parsed.seeds.split(".."))
+    systems, known, total = Counter[str](), Counter[str](), Counter[str]()
+    ratios, false = defaultdict[str, list[float]](list), list[str]()
+    with ProcessPoolExecutor(parsed.jobs) as pool:
+        for number, found in enumerate(pool.map(hunt, range(first, end), chunksize=7), start=1):
+            systems[found.rules] += 1
+            known[found.rules] += found.known
+            total[found.rules] += found.total
+            ratios[found.rules] += found.ratios
+            false += found.false
+            for line in found.false:
+                print(line, flush=True)
+            if number % 500 == 0 or number == end - first:
+                print(f"{number} systems, {len(false)} values beyond their bounds", flush=True)
+                for rules, count in systems.items():
+                    share, ratio = known[rules] / total[rules], ratios[rules]
+                    print(f"| {rules} | {count:,} | {share:.0%} | {median(ratio):.2f} ({max(ratio):.1f}) |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
