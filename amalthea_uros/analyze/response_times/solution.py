@@ -31,6 +31,7 @@ class Solution:
     Attributes
     ----------
     event_models : activations, by the names of processes
+    sent_again : what of these is sent again because messages are lost, by the names of transmissions
     reasons : why the response time of a process is unknown
     migrating : the tasks that any of several cores executes; `responses` has only those with a core
     schedules : of the cores of which it is known and not too long
@@ -38,6 +39,7 @@ class Solution:
 
     context: TimingContext
     event_models: dict[str, EventModel] = field(default_factory=dict)
+    sent_again: Mapping[str, EventModel] = field(default_factory=dict)
     responses: dict[str, Response] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     schedules: dict[str, CoreSchedule] = field(default_factory=dict, repr=False)

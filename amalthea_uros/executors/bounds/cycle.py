@@ -22,7 +22,7 @@ A wait answers the heartbeats that are unread, whose number depends on the cycle
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from amalthea_uros._internal.records import dataclass, replace
@@ -32,11 +32,14 @@ from amalthea_uros.executors.bounds.backlog import (
     backlog_age,
     has_unacknowledged,
     max_heartbeats,
-    reads_until_acknowledged,
+    reads_all,
 )
+from amalthea_uros.executors.bounds.sent_again import reading_time, sent_again_in, writing_again
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
+from amalthea_uros.executors.bounds.transmissions import wire_hop
 from amalthea_uros.executors.semantics.demand import IterationDemand
-from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_wait, min_pace, sleep_of
+from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_until_due, longest_wait, min_pace, sleep_of
+from amalthea_uros.executors.semantics.losses import publications, recovers
 from amalthea_uros.executors.semantics.readiness import (
     can_defer,
     has_backlog,
@@ -48,6 +51,7 @@ from amalthea_uros.executors.semantics.readiness import (
     sharing,
     takes_one_message,
     thread_of,
+    timers,
     why_unknown,
 )
 from amalthea_uros.executors.semantics.suspension import (
@@ -142,6 +146,7 @@ class Cycle:
             session_wait=session_wait(self.executor, system, self.sending, writes),
             writing=writing_in_wait(self.executor, system, self.sending, writes),
         )
+        cycle = replace(cycle, writing=in_sequence([cycle.writing, writing_again(writes.again, self.solved)]))
         cycle = replace(
             cycle, others=tuple(cycle._with_wait(each, writes) for each in others_of_thread(self.executor, system.executors))
         )
@@ -166,6 +171,8 @@ class Cycle:
 
     def _backlog_age(self) -> Time | None:
         """The greatest age of a message in the receive buffer; if this executor does not read in its waits, that of one that does."""
+        if any(recovers(each, self.solved.context.system) for handle in self.executor.handles for each in handle.publications):
+            return self._age_with_losses()
         if reads_in_waits(self.executor):
             return backlog_age(self.longest, self._longest_without_reading, self.sending, self.solved)
         ages = [
@@ -175,13 +182,47 @@ class Cycle:
         ]
         return min((age for age in ages if age is not None), default=None)
 
+    def _age_with_losses(self) -> Time | None:
+        """The greatest age of a message if publications wait on a wire that loses some: see `sent_again`."""
+        if not reads_in_waits(self.executor):
+            return min((age for age in self._until_publications if age is not None), default=None)
+        cycle, age = self._longest_besides_publications, Time(0)
+        for _ in range(_STEPS):
+            reading = reading_time(age, self.solved)
+            found = None if cycle is None or reading is None else backlog_age(reading + cycle, cycle, self.sending, self.solved)
+            if found is None or found == age:
+                return found
+            age = found
+        return None
+
+    @property
+    def _longest_besides_publications(self) -> Time | None:
+        """The longest cycle without a wait, in which publications only write their messages; None if it is not bounded."""
+        system = self.solved.context.system
+        waiting = {each.transmission or "" for each in publications(system) if recovers(each, system)}
+        written = {name: Span(most=wire_hop(system.transmissions[name], self.solved).worst) for name in waiting}
+        return replace(self, sending={**self.sending, **written}).longest
+
+    @property
+    def _until_publications(self) -> Iterator[Time | None]:
+        """How long it can take until a publication of a timer has read everything, of an executor whose waits read nothing.
+
+        From any time, the timer is due again after its period at most, and called a cycle later at most.
+        """
+        for handle in timers(self.executor):
+            if any(recovers(each, self.solved.context.system) for each in handle.publications):
+                parts = longest_until_due(handle), self.longest, self.until_end(handle)
+                yield None if None in parts else sum(filter(None, parts))
+
     def _writes(self) -> ProtocolWrites:
         """How often a wait writes, if the cycle is like this."""
         system = self.solved.context.system
         asked = [each for name, each in acknowledged(self.solved).items() if system.transmissions[name].callback is None]
         unread = [None if each is None or self.backlog_age is None else each.most(self.backlog_age) for each in asked]
         count = None if None in unread else sum(filter(None, unread)) + 1
-        return ProtocolWrites(acknowledgements=count, heartbeats=self._heartbeats)
+        # What is sent again in a wait is sent in its cycle.
+        again = sent_again_in(self.longest_with_wait, self.solved) if reads_in_waits(self.executor) else 0
+        return ProtocolWrites(acknowledgements=count, heartbeats=self._heartbeats, again=again)
 
     @property
     def _heartbeats(self) -> int | None:
@@ -307,7 +348,7 @@ class Cycle:
         return self._longest_of(
             each
             for each in self.executor.handles
-            if not any(reads_until_acknowledged(publication, self.sending) for publication in each.publications)
+            if not any(reads_all(publication, self.sending, self.solved.context.system) for publication in each.publications)
         )
 
     @cached_property
