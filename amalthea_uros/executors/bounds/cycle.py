@@ -97,6 +97,7 @@ class Cycle:
     takes_one : whether at most one handle that receives messages is ready in an iteration
     session_wait : how long others can keep the session when it is needed
     writing : how long a wait is extended by acknowledgements of what it reads, and heartbeats
+    again : how long it is extended by what is sent again, because messages are lost
     backlog_age : how long a message can wait unread; None if that has no bound, or nothing is acknowledged
     others : an iteration with its wait of each other executor in the loop of the thread
     """
@@ -109,6 +110,7 @@ class Cycle:
     takes_one: bool
     session_wait: Time | None = 0
     writing: Suspension = NONE
+    again: Suspension = NONE
     backlog_age: Time | None = None
     others: tuple[IterationPart, ...] = ()
 
@@ -146,7 +148,7 @@ class Cycle:
             session_wait=session_wait(self.executor, system, self.sending, writes),
             writing=writing_in_wait(self.executor, system, self.sending, writes),
         )
-        cycle = replace(cycle, writing=in_sequence([cycle.writing, writing_again(writes.again, self.solved)]))
+        cycle = replace(cycle, again=writing_again(writes.again, self.solved))
         cycle = replace(
             cycle, others=tuple(cycle._with_wait(each, writes) for each in others_of_thread(self.executor, system.executors))
         )
@@ -197,11 +199,11 @@ class Cycle:
 
     @property
     def _longest_besides_publications(self) -> Time | None:
-        """The longest cycle without a wait, in which publications only write their messages; None if it is not bounded."""
+        """The longest cycle without a wait, in which publications only write, and nothing again; None if it is not bounded."""
         system = self.solved.context.system
         waiting = {each.transmission or "" for each in publications(system) if recovers(each, system)}
         written = {name: Span(most=wire_hop(system.transmissions[name], self.solved).worst) for name in waiting}
-        return replace(self, sending={**self.sending, **written}).longest
+        return replace(self, sending={**self.sending, **written}, again=NONE).longest
 
     @property
     def _until_publications(self) -> Iterator[Time | None]:
@@ -222,7 +224,7 @@ class Cycle:
         count = None if None in unread else sum(filter(None, unread)) + 1
         # What is sent again in a wait is sent in its cycle.
         again = sent_again_in(self.longest_with_wait, self.solved) if reads_in_waits(self.executor) else 0
-        return ProtocolWrites(acknowledgements=count, heartbeats=self._heartbeats, again=again)
+        return ProtocolWrites(acknowledgements=count, heartbeats=0 if again else self._heartbeats, again=again)
 
     @property
     def _heartbeats(self) -> int | None:
@@ -362,12 +364,12 @@ class Cycle:
 
     def _suspended(self, wait: Time) -> Time | None:
         """How long the beginning of an iteration is suspended, with some wait; None if it is not bounded."""
-        session, writing = self.session_wait, self.writing.most
-        return None if session is None or writing is None else session + writing + wait
+        times = self.session_wait, self.writing.most, self.again.most
+        return None if None in times else wait + sum(filter(None, times))
 
     def _resumed(self, wait: Time) -> int:
         """How often the thread becomes ready after a suspension in it."""
-        return (1 if self.session_wait else 0) + self.writing.times + (1 if wait else 0)
+        return (1 if self.session_wait else 0) + self.writing.times + self.again.times + (1 if wait else 0)
 
     def _beginning(self, wait: Time) -> Time | None:
         """The longest beginning of an iteration, with some wait; None if it is not bounded."""
@@ -439,8 +441,8 @@ class Cycle:
         if self.session_wait is None or self._of_thread.suspension.most is None:
             why = self._of_thread.suspension.why or "the time for which other executors of its session keep it is unknown"
             return f"an iteration can be suspended without a bound: {why}"
-        if self.writing.most is None:
-            return f"a wait has no bound: {self.writing.why}"
+        if self.writing.most is None or self.again.most is None:
+            return f"a wait has no bound: {(self.writing if self.writing.most is None else self.again).why}"
         return "the processes that preempt it need nearly all of the core"
 
 

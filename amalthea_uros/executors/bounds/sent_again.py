@@ -120,15 +120,18 @@ def reading_time(age: Time, solved: SolvedSystem) -> Time | None:
 
 
 def sent_again_in(time: Time | None, solved: SolvedSystem) -> int | None:
-    """How many messages are sent again in a time; None if that has no bound."""
+    """How many messages are sent again in a time, and heartbeats; None if that has no bound, 0 if none is lost."""
     again = total(solved)
     if again is None:
         return 0
-    return None if time is None else again.eta_plus(time + 1)
+    asking = [solved.event_models.get(each.name) for each in heartbeats(solved.context.system)]
+    if time is None or None in asking:
+        return None
+    return again.eta_plus(time + 1) + sum(each.eta_plus(time + 1) for each in asking if each is not None)
 
 
 def time_to_write_again(count: int, solved: SolvedSystem) -> Time | None:
-    """The longest time to write some messages again, one after the other; None if it has no bound.
+    """The longest time to write some messages again, and heartbeats, one after the other; None if it has no bound.
 
     Nobody else sends in this direction: the first one can wait for what was written before it, and each other one for that before it.
     """
@@ -153,4 +156,4 @@ def writing_again(count: int | None, solved: SolvedSystem) -> Suspension:
     if count == 0:
         return NONE
     most = None if count is None else time_to_write_again(count, solved)
-    return Suspension(most=most, times=count or 1, why="it sends again what is not acknowledged")
+    return Suspension(most=most, times=count or 1, why="it sends heartbeats, and again what is not acknowledged")
