@@ -128,6 +128,15 @@ class Solution:
             found[name] = context.activations.external_rate(process) if is_triggered else events.rate
         return found
 
+    @property
+    def rates_without_losses(self) -> Mapping[str, Fraction]:
+        """The external rates, without what is sent again because messages are lost."""
+        rates = dict(self.external_rates)
+        for name, again in self.sent_again.items():
+            if rates[name]:
+                rates[name] -= again.rate
+        return rates
+
     def depends_on_losses(self, name: str) -> bool:
         """Whether a process, or one of at least its rank on its core, may lose activations: then jobs are missing in the schedule."""
         return bool(self.losing) and (name in self.losing or self.follows_losses(name))
