@@ -29,7 +29,14 @@ from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, L
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
 from amalthea_uros.executors.bounds.publications import sending_times
-from amalthea_uros.executors.bounds.transmissions import agent_hop, arrival_jitter, process_hop, received, sent, wait_for_missing
+from amalthea_uros.executors.bounds.transmissions import (
+    agent_hop,
+    arrival_jitter,
+    process_hop,
+    received,
+    sent,
+    wait_for_missing,
+)
 from amalthea_uros.executors.results import ExecutorResult, Hop, TimePart
 from amalthea_uros.executors.semantics.demand import IterationDemand
 from amalthea_uros.perf.constraints import LatencyConstraint

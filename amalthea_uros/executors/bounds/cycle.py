@@ -190,7 +190,7 @@ class Cycle:
             return min((age for age in self._until_publications if age is not None), default=None)
         cycle, age = self._longest_besides_publications, Time(0)
         for _ in range(_STEPS):
-            reading = reading_time(age, self.solved)
+            reading = self.processor.time(0, reading_time(age, self.solved))
             found = None if cycle is None or reading is None else backlog_age(reading + cycle, cycle, self.sending, self.solved)
             if found is None or found == age:
                 return found

@@ -88,12 +88,12 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
             cycle = Cycle.of(executor, solved, sending)
         except UnknownError:
             lateness[executor.task] = None
-            again |= sent_again(solved, None, reads_in_waits=True)
+            again |= sent_again(solved, None, None, reads_in_waits=True)
             sent |= {each.transmission or "": None for handle in executor.handles for each in _sent_by(handle, solved.context)}
             times += [None] * reads_in_waits(executor)
             continue
         results = [handle_result(handle, cycle, extra_jitter) for handle in executor.handles]
-        again |= sent_again(solved, cycle.greatest_age, reads_in_waits=reads_in_waits(executor))
+        again |= sent_again(solved, cycle.greatest_age, cycle.processor, reads_in_waits=reads_in_waits(executor))
         lateness[executor.task] = _lateness(cycle, results)
         times += [_until_acknowledged(cycle)] * reads_in_waits(executor)
         for handle, result in zip(executor.handles, results, strict=True):

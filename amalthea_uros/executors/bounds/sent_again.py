@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from amalthea_uros.executors.bounds.solved_system import SolvedSystem
+from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
 from amalthea_uros.executors.bounds.transmissions import agent_hop, received, sent, wire_hop
 from amalthea_uros.executors.semantics.losses import acknowledged_from_controller, publications, why_unbounded
 from amalthea_uros.executors.semantics.suspension import NONE, Suspension, heartbeats
@@ -30,12 +30,15 @@ from amalthea_uros.units import Time
 _STEPS = 1000
 
 
-def sent_again(solved: SolvedSystem, age: Time | None, *, reads_in_waits: bool) -> dict[str, EventModel | None]:
+def sent_again(
+    solved: SolvedSystem, age: Time | None, processor: ThreadProcessor | None, *, reads_in_waits: bool
+) -> dict[str, EventModel | None]:
     """How often messages are sent again, by the names of transmissions: all of the controller together; None if that is not known.
 
     Parameters
     ----------
     age : greatest age of an unread message; None if it has no bound
+    processor : as the thread sees it; None if it is not known
     reads_in_waits : whether the waits of iterations read; else only publications do, and only they send heartbeats
     """
     system = solved.context.system
@@ -44,7 +47,7 @@ def sent_again(solved: SolvedSystem, age: Time | None, *, reads_in_waits: bool) 
         messages = acknowledged_from_controller(wire.name, system)
         if not losses_from_controller(wire) or not messages or why_unbounded(wire, system):
             continue
-        again = _again(wire, messages, age, solved, reads_in_waits)
+        again = _again(wire, messages, age, processor, solved, reads_in_waits)
         names = {each.name for each in messages}
         answers = (each.name for each in system.network.transmissions if each.acknowledges in names)
         found |= dict.fromkeys((*names, *answers), again)
@@ -57,20 +60,28 @@ def losses_from_controller(wire: Wire) -> list[Losses]:
 
 
 def _again(
-    wire: Wire, messages: Iterable[Transmission], age: Time | None, solved: SolvedSystem, reads_in_waits: bool
+    wire: Wire,
+    messages: Iterable[Transmission],
+    age: Time | None,
+    processor: ThreadProcessor | None,
+    solved: SolvedSystem,
+    reads_in_waits: bool,
 ) -> EventModel | None:
     system = solved.context.system
     asking = [each for each in heartbeats(system) if each.wire == wire.name]
     trips = [_round_trip(each, solved) for each in (*messages, *asking)]
     events = [solved.event_models.get(each.name) for each in asking]
     reading = None if age is None else reading_time(age, solved)
-    if age is None or reading is None or None in trips or None in events or wire.recovery is None:
+    if age is None or reading is None or processor is None or None in trips or None in events or wire.recovery is None:
         return None
     trip, kept = max(filter(None, trips), default=Time(0)), wire.recovery.sent_parts or 0
+    # Others can keep the thread from reading.
+    until_read, in_both = processor.time(0, trip + reading), processor.time(0, 2 * trip + reading)
+    timeouts = [each.timeout or 0 for each in publications(system) if each.waits]
     # Otherwise a publication could end before it has read what is missing.
-    if any(each.waits and (each.timeout or 0) <= trip + reading for each in publications(system)):
+    if until_read is None or in_both is None or min(timeouts, default=0) <= until_read:
         return None
-    longest = trip + age if reads_in_waits else 2 * trip + reading
+    longest = trip + age if reads_in_waits else in_both
     answers = kept + 1 + sum(each.eta_plus(longest + 1) for each in events if each is not None)
     return aggregated(tuple(_bursts(wire, longest, answers * kept)))
 

@@ -121,7 +121,9 @@ def wait_for_missing(transmission: Transmission, system: System) -> Hop | None:
     lossy = any(wire.loses_messages for wire in system.network.wires if wire.name == transmission.wire)
     if not lossy or all(each.acknowledges != transmission.name for each in system.network.transmissions):
         return None
-    reason = f"messages can be lost on {transmission.wire!r}, and a reliable one waits until those before it have been sent again"
+    reason = (
+        f"messages can be lost on {transmission.wire!r}, and a reliable one waits until those before it have been sent again"
+    )
     remedy = "Use best effort where losses are harmless: what is lost is then gone, and nothing waits for it."
     return Hop(kind=HopKind.LINK, name=transmission.wire, best=0, reason=reason, remedy=remedy)
 
