@@ -1,7 +1,7 @@
 """How often messages are sent again on a wire that loses some, and how long that takes.
 
 The agent says in each acknowledgement whether something is missing; then the client sends again all that is not acknowledged, at most H
-messages (`src/c/core/session/session.c` of eProsima/Micro-XRCE-DDS-Client). The bound is proved in docs/proofs/sent-again.md: let T be the
+messages (`src/c/core/session/session.c` of eProsima/Micro-XRCE-DDS-Client). docs/proofs/sent-again.md proves the bound: let T be the
 longest time from a write of a reliable message or a heartbeat until its acknowledgement is read. Each loss is followed by at most
 
     a = H + 1 + heartbeats in T
