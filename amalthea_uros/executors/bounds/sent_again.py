@@ -9,8 +9,8 @@ longest time from a write of a reliable message or a heartbeat until its acknowl
 acknowledgements that say that it is missing, and each of them by H messages. Of all losses before a window of length w, only those in
 the last T count, and one more for all that are still missing then: at most H a (losses in w + T, and one more).
 
-A publication reads all the time while it waits. If its timeout is longer than a round trip and the time b to answer everything that is
-unread, nothing is unread at some time before it ends, and everything that arrives after that is read b later, or after it.
+A publication reads all the time while it waits. If its timeout is longer than a round trip and the time b to acknowledge the
+whole receive backlog, that is empty at some time before it ends, and everything that arrives after that is read b later, or after it.
 """
 
 from __future__ import annotations
@@ -37,21 +37,21 @@ def sent_again(
 
     Parameters
     ----------
-    age : greatest age of an unread message; None if it has no bound
+    age : greatest age of an message of the receive backlog; None if it has no bound
     processor : as the thread sees it; None if it is not known
     reads_in_waits : whether the waits of iterations read; else only publications do, and only they send heartbeats
     """
     system = solved.context.system
-    found: dict[str, EventModel | None] = {}
+    models: dict[str, EventModel | None] = {}
     for wire in system.network.wires:
         messages = acknowledged_from_controller(wire.name, system)
         if not losses_from_controller(wire) or not messages or why_unbounded(wire, system):
             continue
         again = _again(wire, messages, age, processor, solved, reads_in_waits)
         names = {each.name for each in messages}
-        answers = (each.name for each in system.network.transmissions if each.acknowledges in names)
-        found |= dict.fromkeys((*names, *answers), again)
-    return found
+        acknowledging = (each.name for each in system.network.transmissions if each.acknowledges in names)
+        models |= dict.fromkeys((*names, *acknowledging), again)
+    return models
 
 
 def losses_from_controller(wire: Wire) -> list[Losses]:
@@ -82,8 +82,8 @@ def _again(
     if until_read is None or in_both is None or min(timeouts, default=0) <= until_read:
         return None
     longest = trip + age if reads_in_waits else in_both
-    answers = kept + 1 + sum(each.eta_plus(longest + 1) for each in events if each is not None)
-    return aggregated(tuple(_bursts(wire, longest, answers * kept)))
+    count = kept + 1 + sum(each.eta_plus(longest + 1) for each in events if each is not None)
+    return aggregated(tuple(_bursts(wire, longest, count * kept)))
 
 
 def _bursts(wire: Wire, longest: Time, count: int) -> Iterator[EventModel]:
@@ -94,10 +94,10 @@ def _bursts(wire: Wire, longest: Time, count: int) -> Iterator[EventModel]:
 
 def _round_trip(message: Transmission, solved: SolvedSystem) -> Time | None:
     """From the write of what is acknowledged until the acknowledgement can be read; None if that has no bound."""
-    answer = next((each for each in solved.context.system.network.transmissions if each.acknowledges == message.name), None)
-    if answer is None:
+    reply = next((each for each in solved.context.system.network.transmissions if each.acknowledges == message.name), None)
+    if reply is None:
         return None
-    times = [each.worst for each in (*sent(message, solved), agent_hop(answer, solved), *received(answer, solved))]
+    times = [each.worst for each in (*sent(message, solved), agent_hop(reply, solved), *received(reply, solved))]
     return None if None in times else sum(filter(None, times))
 
 
@@ -114,11 +114,11 @@ def most_at_once(solved: SolvedSystem) -> int:
 
 
 def reading_time(age: Time, solved: SolvedSystem) -> Time | None:
-    """The longest time to read and answer everything that is unread, without a pause; None if it has no bound.
+    """The longest time to read and acknowledge the whole receive backlog, without a pause; None if it has no bound.
 
     Parameters
     ----------
-    age : greatest age of an unread message
+    age : greatest age of an message of the receive backlog
     """
     time: Time = 0
     for _ in range(_STEPS):

@@ -77,7 +77,7 @@ def why_unbounded(wire: Wire, system: System) -> str:
         return "not each reliable message is a publication that waits"
     if any(publication.timeout is None for publication in published.values() if publication.waits):
         return "a publication waits without a timeout"
-    if any(parts(answer, system) > 1 for each in sent if (answer := _acknowledgement(each, system)) is not None):
+    if any(parts(reply, system) > 1 for each in sent if (reply := _acknowledgement(each, system)) is not None):
         return "a message is sent in several parts"
     return ""
 

@@ -4,8 +4,8 @@ A frame has a flag, the addresses of source and destination, the length in two b
 (eProsima/Micro-XRCE-DDS-Client `src/c/profile/transport/stream_framing/stream_framing_protocol.c`). A byte after the flag that equals
 the flag or the escape byte is sent as two. Client and agent fill a buffer of 42 bytes and write it as soon as it is full.
 
-How many bytes are escaped depends on their values, which nobody states: at most all, and if each value is as frequent as any other, 2
-of 256. Bounds have the former, simulations the latter.
+How many bytes are escaped depends on their values, which are not specified: at most all, and if each value is as frequent as any other,
+2 of 256. Bounds have the former, simulations the latter.
 """
 
 from __future__ import annotations
@@ -67,13 +67,13 @@ def spread(length: int, least: Sequence[int], most: Sequence[int], bits_per_byte
     ----------
     length : of the message, in bytes
     """
-    found, before = [], 0
+    frames, before = [], 0
     for low, high in zip_longest(least, most, fillvalue=0):
         weights = _weights(length + OVERHEAD - 1, before, high - low)
         in_bits = tuple(((low + more) * bits_per_byte, weight) for more, weight in weights)
-        found.append(Frame(least=low * bits_per_byte, most=high * bits_per_byte, weights=in_bits))
+        frames.append(Frame(least=low * bits_per_byte, most=high * bits_per_byte, weights=in_bits))
         before += high - low
-    return tuple(found)
+    return tuple(frames)
 
 
 @cache
@@ -96,12 +96,12 @@ def _weights(count: int, before: int, room: int) -> tuple[tuple[int, int], ...]:
 @cache
 def _escaped(count: int) -> tuple[int, ...]:
     """How often so many of some random bytes are escaped, from 0 on, in billionths; what is rarer is left out."""
-    found: list[int] = []
-    while sum(found) < BILLION - count and len(found) <= count:
-        number = len(found)
-        ways = comb(count, number) * ESCAPED**number * (BYTES - ESCAPED) ** (count - number)
-        found.append(round(Fraction(ways * BILLION, BYTES**count)))
-    return tuple(found)
+    counts: list[int] = []
+    while sum(counts) < BILLION - count and len(counts) <= count:
+        number = len(counts)
+        choices = comb(count, number) * ESCAPED**number * (BYTES - ESCAPED) ** (count - number)
+        counts.append(round(Fraction(choices * BILLION, BYTES**count)))
+    return tuple(counts)
 
 
 def in_chunks(length: int, bits_per_byte: int) -> tuple[Frame, ...]:
