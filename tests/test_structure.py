@@ -30,7 +30,7 @@ LINES = {
     "difference": 790,
     "editor": 641,
     "errors": 13,
-    "executors": 1966,
+    "executors": 2192,
     "findings": 529,
     "inchron": 532,
     "inchron_bridge": 3342,
@@ -48,7 +48,7 @@ LINES = {
     "timing": 5606,
     "trace": 5057,
     "units": 200,
-    "uros": 6845,
+    "uros": 6876,
     "validate": 3660,
     "xmi": 8542,
 }

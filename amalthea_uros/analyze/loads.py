@@ -85,18 +85,26 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fr
     load, regular = _load(names, core, solution), _never_suppressed(names, solution)
     if regular != names:
         return _load(regular, core, solution).best, None, load.worst
+    if solution.sent_again.keys() & set(names):
+        # How much is lost at least, and on average, is not known.
+        return _load(names, core, solution, solution.rates_without_losses).best, None, load.worst
     polling = any(item.name in context.waiting and context.waiting[item.name].polls for item in here)
     has_mean = not polling and all(states_mean(item.process, context.system) for item in here)
     return load.best, load.mean if has_mean else None, load.worst
 
 
-def _load(names: Iterable[str], core: str, solution: Solution) -> JobDemand:
-    """The load of a core by some of its processes."""
+def _load(names: Iterable[str], core: str, solution: Solution, rates: Mapping[str, Fraction] | None = None) -> JobDemand:
+    """The load of a core by some of its processes.
+
+    Parameters
+    ----------
+    rates : of activations that no process triggers; None for those of the solution
+    """
     context = solution.context
     demands = {name: _demand(name, context) for name in names}
     # What triggers the processes of a core need not be on it.
     model = context.executing if context.waiting else context.demand_model
-    return CoreLoad(core, demands, context.activations, model).load(solution.external_rates)
+    return CoreLoad(core, demands, context.activations, model).load(solution.external_rates if rates is None else rates)
 
 
 def _demand(name: str, context: TimingContext) -> MultiframeDemand:

@@ -29,7 +29,14 @@ from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, L
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
 from amalthea_uros.executors.bounds.publications import sending_times
-from amalthea_uros.executors.bounds.transmissions import agent_hop, arrival_jitter, process_hop, received, sent
+from amalthea_uros.executors.bounds.transmissions import (
+    agent_hop,
+    arrival_jitter,
+    process_hop,
+    received,
+    sent,
+    wait_for_missing,
+)
 from amalthea_uros.executors.results import ExecutorResult, Hop, TimePart
 from amalthea_uros.executors.semantics.demand import IterationDemand
 from amalthea_uros.perf.constraints import LatencyConstraint
@@ -164,6 +171,11 @@ class MessageChains:
         return hops, assumptions
 
     def _message(self, before: ChainSegment | None, transmission: Transmission, hops: list[Hop]) -> Iterator[Hop]:
+        yield from self._message_hops(before, transmission, hops)
+        if wait := wait_for_missing(transmission, self.context.system):
+            yield wait
+
+    def _message_hops(self, before: ChainSegment | None, transmission: Transmission, hops: list[Hop]) -> Iterator[Hop]:
         agent, topic = agent_hop(transmission, self.solution), transmission.topic
         if transmission.direction is Direction.TO_CONTROLLER:
             is_from_host = isinstance(before, Transmission) and before.direction is Direction.TO_AGENT

@@ -27,7 +27,7 @@ from amalthea_uros.timing.activation.activations import Output
 from amalthea_uros.timing.basics.time_base import MAX_INPUT, max_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import Delayed, EventModel, OutputEventModel, PeriodicEvents
+from amalthea_uros.timing.event_models.models import Delayed, EventModel, OutputEventModel, PeriodicEvents, aggregated
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
@@ -72,6 +72,7 @@ def _iterate(solution: Solution, diverging: set[str]) -> set[str]:
         previous, known_reasons, activations = responses, len(solution.reasons), solution.event_models
         executors = _executor_occurrences(solution, previous if number else None)
         bound_waits(solution, previous)
+        solution.sent_again = {name: each for name, each in executors.again.items() if each is not None}
         solution.event_models = _event_models(solution, diverging, previous, executors)
         responses = {}
         for core in solution.context.system.cores:
@@ -127,7 +128,7 @@ def _event_models(
         if name in diverging:
             continue
         try:
-            events = _activations(scheduled, output, executors, context)
+            events = _with_sent_again(name, _activations(scheduled, output, executors, context), executors)
             if isinstance(events, PeriodicEvents) and events.jitter * context.time_base(name) > MAX_INPUT:
                 raise UnknownError("its jitter exceeds the supported range of times")
             found[name] = events
@@ -157,6 +158,16 @@ def _activations(item: ScheduledProcess, output: Output, executors: ExecutorOccu
         if deferred and late:
             return Delayed(events, late)
     return workload(executor, events, longest) if item.name == executor.task else events
+
+
+def _with_sent_again(name: str, events: EventModel, executors: ExecutorOccurrences) -> EventModel:
+    """The activations of a process, with those of a message that is sent again because some are lost."""
+    if name not in executors.again:
+        return events
+    again = executors.again[name]
+    if again is None:
+        raise UnknownError("how often it is sent again, because messages are lost, has no bound")
+    return aggregated((events, again))
 
 
 def activated_with(name: str, context: TimingContext) -> Executor | None:

@@ -31,6 +31,7 @@ class Solution:
     Attributes
     ----------
     event_models : activations, by the names of processes
+    sent_again : what of these is sent again because messages are lost, by the names of transmissions
     reasons : why the response time of a process is unknown
     migrating : the tasks that any of several cores executes; `responses` has only those with a core
     schedules : of the cores of which it is known and not too long
@@ -38,6 +39,7 @@ class Solution:
 
     context: TimingContext
     event_models: dict[str, EventModel] = field(default_factory=dict)
+    sent_again: Mapping[str, EventModel] = field(default_factory=dict)
     responses: dict[str, Response] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     schedules: dict[str, CoreSchedule] = field(default_factory=dict, repr=False)
@@ -125,6 +127,15 @@ class Solution:
             # The rounds of an executor are not as frequent as its stimulus.
             found[name] = context.activations.external_rate(process) if is_triggered else events.rate
         return found
+
+    @property
+    def rates_without_losses(self) -> Mapping[str, Fraction]:
+        """The external rates, without what is sent again because messages are lost."""
+        rates = dict(self.external_rates)
+        for name, again in self.sent_again.items():
+            if rates[name]:
+                rates[name] -= again.rate
+        return rates
 
     def depends_on_losses(self, name: str) -> bool:
         """Whether a process, or one of at least its rank on its core, may lose activations: then jobs are missing in the schedule."""

@@ -28,7 +28,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import received, variation
-from amalthea_uros.executors.semantics.suspension import acknowledgements, heartbeats, parts
+from amalthea_uros.executors.semantics.losses import publications, recovers
+from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.executors.semantics.suspension import acknowledgements, heartbeats
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.system import System
@@ -120,20 +122,15 @@ def max_backlog(kinds: Sequence[Arriving], cycle: Time, further: Time) -> int | 
     return None
 
 
-def reads_until_acknowledged(publication: Publication, sending: Mapping[str, Span]) -> bool:
-    """Whether a publication reads all messages before its acknowledgement."""
-    return publication.waits and not times_out(publication, sending)
+def reads_all(publication: Publication, sending: Mapping[str, Span], system: System) -> bool:
+    """Whether nothing is unread at some time of a publication, or when its acknowledgement has come; see `recovery`."""
+    return (publication.waits and not times_out(publication, sending)) or recovers(publication, system)
 
 
 def times_out(publication: Publication, sending: Mapping[str, Span]) -> bool:
     """Whether a publication can end before it is acknowledged; its timeout begins after it is written."""
     most = sending.get(publication.transmission or "", Span()).most
     return not publication.waits or most is None or publication.timeout is None or most > publication.timeout
-
-
-def publications(system: System) -> list[Publication]:
-    """All publications of callbacks of executors."""
-    return [each for executor in system.executors for handle in executor.handles for each in handle.publications]
 
 
 def has_unacknowledged(sending: Mapping[str, Span], solved: SolvedSystem) -> bool:

@@ -22,7 +22,7 @@ A wait answers the heartbeats that are unread, whose number depends on the cycle
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from amalthea_uros._internal.records import dataclass, replace
@@ -32,11 +32,14 @@ from amalthea_uros.executors.bounds.backlog import (
     backlog_age,
     has_unacknowledged,
     max_heartbeats,
-    reads_until_acknowledged,
+    reads_all,
 )
+from amalthea_uros.executors.bounds.sent_again import reading_time, sent_again_in, writing_again
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
+from amalthea_uros.executors.bounds.transmissions import wire_hop
 from amalthea_uros.executors.semantics.demand import IterationDemand
-from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_wait, min_pace, sleep_of
+from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_until_due, longest_wait, min_pace, sleep_of
+from amalthea_uros.executors.semantics.losses import publications, recovers
 from amalthea_uros.executors.semantics.readiness import (
     can_defer,
     has_backlog,
@@ -48,6 +51,7 @@ from amalthea_uros.executors.semantics.readiness import (
     sharing,
     takes_one_message,
     thread_of,
+    timers,
     why_unknown,
 )
 from amalthea_uros.executors.semantics.suspension import (
@@ -93,6 +97,7 @@ class Cycle:
     takes_one : whether at most one handle that receives messages is ready in an iteration
     session_wait : how long others can keep the session when it is needed
     writing : how long a wait is extended by acknowledgements of what it reads, and heartbeats
+    again : how long it is extended by what is sent again, because messages are lost
     backlog_age : how long a message can wait unread; None if that has no bound, or nothing is acknowledged
     others : an iteration with its wait of each other executor in the loop of the thread
     """
@@ -105,6 +110,7 @@ class Cycle:
     takes_one: bool
     session_wait: Time | None = 0
     writing: Suspension = NONE
+    again: Suspension = NONE
     backlog_age: Time | None = None
     others: tuple[IterationPart, ...] = ()
 
@@ -142,6 +148,7 @@ class Cycle:
             session_wait=session_wait(self.executor, system, self.sending, writes),
             writing=writing_in_wait(self.executor, system, self.sending, writes),
         )
+        cycle = replace(cycle, again=writing_again(writes.again, self.solved))
         cycle = replace(
             cycle, others=tuple(cycle._with_wait(each, writes) for each in others_of_thread(self.executor, system.executors))
         )
@@ -166,6 +173,8 @@ class Cycle:
 
     def _backlog_age(self) -> Time | None:
         """The greatest age of a message in the receive buffer; if this executor does not read in its waits, that of one that does."""
+        if any(recovers(each, self.solved.context.system) for handle in self.executor.handles for each in handle.publications):
+            return self._age_with_losses()
         if reads_in_waits(self.executor):
             return backlog_age(self.longest, self._longest_without_reading, self.sending, self.solved)
         ages = [
@@ -175,13 +184,47 @@ class Cycle:
         ]
         return min((age for age in ages if age is not None), default=None)
 
+    def _age_with_losses(self) -> Time | None:
+        """The greatest age of a message if publications wait on a wire that loses some: see `sent_again`."""
+        if not reads_in_waits(self.executor):
+            return min((age for age in self._until_publications if age is not None), default=None)
+        cycle, age = self._longest_besides_publications, Time(0)
+        for _ in range(_STEPS):
+            reading = self.processor.time(0, reading_time(age, self.solved))
+            found = None if cycle is None or reading is None else backlog_age(reading + cycle, cycle, self.sending, self.solved)
+            if found is None or found == age:
+                return found
+            age = found
+        return None
+
+    @property
+    def _longest_besides_publications(self) -> Time | None:
+        """The longest cycle without a wait, in which publications only write, and nothing again; None if it is not bounded."""
+        system = self.solved.context.system
+        waiting = {each.transmission or "" for each in publications(system) if recovers(each, system)}
+        written = {name: Span(most=wire_hop(system.transmissions[name], self.solved).worst) for name in waiting}
+        return replace(self, sending={**self.sending, **written}, again=NONE).longest
+
+    @property
+    def _until_publications(self) -> Iterator[Time | None]:
+        """How long it can take until a publication of a timer has read everything, of an executor whose waits read nothing.
+
+        From any time, the timer is due again after its period at most, and called a cycle later at most.
+        """
+        for handle in timers(self.executor):
+            if any(recovers(each, self.solved.context.system) for each in handle.publications):
+                parts = longest_until_due(handle), self.longest, self.until_end(handle)
+                yield None if None in parts else sum(filter(None, parts))
+
     def _writes(self) -> ProtocolWrites:
         """How often a wait writes, if the cycle is like this."""
         system = self.solved.context.system
         asked = [each for name, each in acknowledged(self.solved).items() if system.transmissions[name].callback is None]
         unread = [None if each is None or self.backlog_age is None else each.most(self.backlog_age) for each in asked]
         count = None if None in unread else sum(filter(None, unread)) + 1
-        return ProtocolWrites(acknowledgements=count, heartbeats=self._heartbeats)
+        # What is sent again in a wait is sent in its cycle.
+        again = sent_again_in(self.longest_with_wait, self.solved) if reads_in_waits(self.executor) else 0
+        return ProtocolWrites(acknowledgements=count, heartbeats=0 if again else self._heartbeats, again=again)
 
     @property
     def _heartbeats(self) -> int | None:
@@ -307,7 +350,7 @@ class Cycle:
         return self._longest_of(
             each
             for each in self.executor.handles
-            if not any(reads_until_acknowledged(publication, self.sending) for publication in each.publications)
+            if not any(reads_all(publication, self.sending, self.solved.context.system) for publication in each.publications)
         )
 
     @cached_property
@@ -321,12 +364,12 @@ class Cycle:
 
     def _suspended(self, wait: Time) -> Time | None:
         """How long the beginning of an iteration is suspended, with some wait; None if it is not bounded."""
-        session, writing = self.session_wait, self.writing.most
-        return None if session is None or writing is None else session + writing + wait
+        times = self.session_wait, self.writing.most, self.again.most
+        return None if None in times else wait + sum(filter(None, times))
 
     def _resumed(self, wait: Time) -> int:
         """How often the thread becomes ready after a suspension in it."""
-        return (1 if self.session_wait else 0) + self.writing.times + (1 if wait else 0)
+        return (1 if self.session_wait else 0) + self.writing.times + self.again.times + (1 if wait else 0)
 
     def _beginning(self, wait: Time) -> Time | None:
         """The longest beginning of an iteration, with some wait; None if it is not bounded."""
@@ -398,8 +441,8 @@ class Cycle:
         if self.session_wait is None or self._of_thread.suspension.most is None:
             why = self._of_thread.suspension.why or "the time for which other executors of its session keep it is unknown"
             return f"an iteration can be suspended without a bound: {why}"
-        if self.writing.most is None:
-            return f"a wait has no bound: {self.writing.why}"
+        if self.writing.most is None or self.again.most is None:
+            return f"a wait has no bound: {(self.writing if self.writing.most is None else self.again).why}"
         return "the processes that preempt it need nearly all of the core"
 
 

@@ -147,6 +147,7 @@ def _of_cycle(cycle: Cycle) -> list[TimePart]:
             why="the loop lets them spin before this one again, with their waits",
         ),
         TimePart(name="acknowledgements", most=cycle.writing.most or 0, why=cycle.writing.why),
+        TimePart(name="sent again", most=cycle.again.most or 0, why=cycle.again.why),
         TimePart(
             name="session",
             most=cycle.session_wait or 0,

@@ -27,11 +27,14 @@ from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.evaluate import handle_result
 from amalthea_uros.executors.bounds.publications import sending_times
 from amalthea_uros.executors.bounds.sending_places import sending_places
+from amalthea_uros.executors.bounds.sent_again import sent_again
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
 from amalthea_uros.executors.results import HandleResult
+from amalthea_uros.executors.semantics.losses import recovers
+from amalthea_uros.executors.semantics.message_parts import parts
 from amalthea_uros.executors.semantics.readiness import arrivals, reads_in_waits
-from amalthea_uros.executors.semantics.suspension import acknowledgements, parts
+from amalthea_uros.executors.semantics.suspension import acknowledgements
 from amalthea_uros.perf.executors import Handle, HandleKind, Publication
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.timing.context import TimingContext
@@ -54,10 +57,12 @@ class ExecutorOccurrences:
     ----------
     sent : by the names of transmissions; None if that has no bound
     lateness : of the end of an iteration after what began it, by the names of tasks; None if that has no bound
+    again : what is sent again besides, by the names of transmissions; None if that has no bound
     """
 
     sent: Mapping[str, EventModel | None] = field(default_factory=dict)
     lateness: Mapping[str, Time | None] = field(default_factory=dict)
+    again: Mapping[str, EventModel | None] = field(default_factory=dict)
 
 
 def least_occurrences(context: TimingContext) -> ExecutorOccurrences:
@@ -77,15 +82,18 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
     sent: dict[str, EventModel | None] = {}
     lateness: dict[str, Time | None] = {}
     times: list[Time | None] = []
+    again: dict[str, EventModel | None] = {}
     for executor in solved.context.system.executors:
         try:
             cycle = Cycle.of(executor, solved, sending)
         except UnknownError:
             lateness[executor.task] = None
+            again |= sent_again(solved, None, None, reads_in_waits=True)
             sent |= {each.transmission or "": None for handle in executor.handles for each in _sent_by(handle, solved.context)}
             times += [None] * reads_in_waits(executor)
             continue
         results = [handle_result(handle, cycle, extra_jitter) for handle in executor.handles]
+        again |= sent_again(solved, cycle.greatest_age, cycle.processor, reads_in_waits=reads_in_waits(executor))
         lateness[executor.task] = _lateness(cycle, results)
         times += [_until_acknowledged(cycle)] * reads_in_waits(executor)
         for handle, result in zip(executor.handles, results, strict=True):
@@ -95,7 +103,7 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
     late = None if None in times else max(filter(None, times), default=Time(0))
     arriving = acknowledged(solved)
     written = {name: _acknowledging(arriving[name], late) for name in _acknowledgements_of_executors(solved.context)}
-    return ExecutorOccurrences(sent=sent | written, lateness=lateness)
+    return ExecutorOccurrences(sent=sent | written, lateness=lateness, again=again)
 
 
 def _published(publication: Publication, calls: EventModel | None, cycle: Cycle) -> Mapping[str, EventModel | None]:
@@ -157,6 +165,8 @@ def _calls(
         return SporadicEvents(distance) if distance else None
     # A timer can lose expirations of which it is late, and a message can find its queue full.
     is_each = handle.kind is HandleKind.TIMER and worst is not None and worst <= ready.period
+    # What is missing stays in its buffer, until no more is sent.
+    is_each = is_each and not recovers(publication, cycle.solved.context.system)
     calls = (type(ready) if is_each else SporadicEvents)(ready.period, ready.jitter + late, distance if places.most == 1 else 0)
     return calls if places.most == 1 else Multiplied(calls, places.most)
 

@@ -18,7 +18,8 @@ with one answer for each part of a message. The first heartbeat follows an inter
 it; the wait lies in one cycle L, so that w + L has room for (w + L) / interval of them.
 
 It times out when the timeout has passed, which begins when the message is written and is looked at between two readings. The last one
-can write an answer, and heartbeats as long as the timeout lasts. If one of these writes has no bound, the publication has none.
+can write an answer, or send again what is not acknowledged (`sent_again`), and heartbeats as long as the timeout lasts. If one of these
+writes has no bound, the publication has none.
 """
 
 from __future__ import annotations
@@ -27,11 +28,13 @@ from collections.abc import Iterator, Mapping
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.bounds.backlog import DUE, Arriving, acknowledged, has_unacknowledged, publications
+from amalthea_uros.executors.bounds.backlog import DUE, Arriving, acknowledged, has_unacknowledged, max_heartbeats
 from amalthea_uros.executors.bounds.cycle import Cycle
+from amalthea_uros.executors.bounds.sent_again import most_at_once, time_to_write_again
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import agent_hop, received, sent, wire_hop
 from amalthea_uros.executors.results import Hop
+from amalthea_uros.executors.semantics.losses import publications, recovers
 from amalthea_uros.executors.semantics.suspension import acknowledgements, heartbeats
 from amalthea_uros.perf.executors import Executor, Publication
 from amalthea_uros.perf.network import Span, Transmission
@@ -117,6 +120,9 @@ def _until_acknowledged(
     most = _lesser(
         None if known is None else _with_writes(known, session, arrivals, solved), _until_timeout(publication, solved)
     )
+    if recovers(publication, solved.context.system):
+        # It returns at once if the client still keeps as many messages as it can.
+        least = Time(0)
     return Span(least=least if most is None else min(least, most), most=most)
 
 
@@ -171,12 +177,17 @@ def _heartbeat_time(time: Time, first: int, solved: SolvedSystem) -> Time | None
 def _until_timeout(publication: Publication, solved: SolvedSystem) -> Time | None:
     """When a publication times out; None if it does not, or what it writes has no bound."""
     transmissions = solved.context.system.transmissions
+    if publication.timeout is not None and (kept := most_at_once(solved)):
+        # It writes its message, heartbeats, and at last sends again what is missing, one after the other.
+        beats = max_heartbeats(publication.timeout, solved)
+        writing = None if beats is None else time_to_write_again(1 + beats + kept, solved)
+        return None if writing is None else publication.timeout + writing
     written = _until_written(transmissions.get(publication.transmission or ""), solved).most
     writes = [_until_written(each, solved).most for each in acknowledgements(solved.context.system)]
     if publication.timeout is None or written is None or None in writes:
         return None
-    beats = _heartbeat_time(publication.timeout, DUE, solved)
-    return None if beats is None else written + publication.timeout + max(filter(None, writes), default=0) + beats
+    beats_time = _heartbeat_time(publication.timeout, DUE, solved)
+    return None if beats_time is None else written + publication.timeout + max(filter(None, writes), default=0) + beats_time
 
 
 def _round_trip(publication: Publication, solved: SolvedSystem) -> Iterator[Hop]:

@@ -47,6 +47,10 @@ class SolvedSystem(Protocol):
         """Response times, by the names of processes."""
 
     @property
+    def sent_again(self) -> Mapping[str, EventModel]:
+        """How often messages are sent again because some are lost, by their names: all of the controller together."""
+
+    @property
     def reasons(self) -> Mapping[str, str]:
         """Why the response time of a process is unknown."""
 

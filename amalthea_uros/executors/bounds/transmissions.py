@@ -13,6 +13,7 @@ from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import Hop, HopKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.software import Isr, Task
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.time_base import max_time
 from amalthea_uros.units import Time
 
@@ -113,6 +114,18 @@ def process_hop(name: str, solved: SolvedSystem) -> Hop:
         reason = f"the response time of {name!r} has no bound: {why or 'it can lose activations'}"
         return Hop(kind=kind, name=name, best=best, reason=reason, remedy=f"See the results of {name!r}.")
     return Hop(kind=kind, name=name, best=best, worst=response.worst, source=f"response time by {response.method}")
+
+
+def wait_for_missing(transmission: Transmission, system: System) -> Hop | None:
+    """The time for which a reliable message waits for one that was lost before it, which has no bound; None if none can be lost."""
+    lossy = any(wire.loses_messages for wire in system.network.wires if wire.name == transmission.wire)
+    if not lossy or all(each.acknowledges != transmission.name for each in system.network.transmissions):
+        return None
+    reason = (
+        f"messages can be lost on {transmission.wire!r}, and a reliable one waits until those before it have been sent again"
+    )
+    remedy = "Use best effort where losses are harmless: what is lost is then gone, and nothing waits for it."
+    return Hop(kind=HopKind.LINK, name=transmission.wire, best=0, reason=reason, remedy=remedy)
 
 
 def variation(hops: Sequence[Hop]) -> Time | None:

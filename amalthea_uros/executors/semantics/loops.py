@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from amalthea_uros.executors.semantics.losses import why_unbounded
 from amalthea_uros.executors.semantics.readiness import (
     can_defer,
     is_message,
@@ -115,11 +116,15 @@ def _busy_thread(executor: Executor, system: System) -> str:
 def _sent_again(system: System) -> dict[str, str]:
     """The messages on wires that lose reliable ones, each with the reason why nobody knows how often it is sent."""
     acknowledging = {each.wire for each in system.network.transmissions if each.acknowledges is not None}
-    lossy = {wire.name for wire in system.network.wires if wire.losses} & acknowledging
+    reasons = {
+        wire.name: reason
+        for wire in system.network.wires
+        if wire.losses and wire.name in acknowledging and (reason := why_unbounded(wire, system))
+    }
     return {
-        each.name: f"messages are lost on {each.wire!r}, and reliable ones are sent again"
+        each.name: f"messages are lost on {each.wire!r}, and reliable ones are sent again: {reasons[each.wire]}"
         for each in system.network.transmissions
-        if each.wire in lossy
+        if each.wire in reasons
     }
 
 

@@ -1,9 +1,13 @@
-"""The losses of wires in words."""
+"""The losses of wires, and whether what they lead to has a bound."""
 
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.perf.network import Direction, Losses, Wire
+from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.perf.executors import Publication
+from amalthea_uros.perf.network import Direction, Losses, Purpose, Transmission, Wire, WireKind
+from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.system import System
 from amalthea_uros.units import time_text
 
 _PERCENT = 10**7
@@ -16,3 +20,73 @@ def losses_text(wire: Wire, losses: Losses) -> str:
         return f"{wire.name!r} loses at most {counted(losses.count, 'message')}{which} in any {time_text(losses.window)}"
     percent = f"{losses.per_billion / _PERCENT:.7f}".rstrip("0").rstrip(".")
     return f"{wire.name!r} loses each message{which} with a probability of {percent} %"
+
+
+def publications(system: System) -> list[Publication]:
+    """All publications of callbacks of executors."""
+    return [each for executor in system.executors for handle in executor.handles for each in handle.publications]
+
+
+def acknowledged_from_controller(wire: str, system: System) -> list[Transmission]:
+    """The messages from the controller on a wire that the agent acknowledges."""
+    return [
+        each
+        for each in system.network.transmissions
+        if (each.wire, each.direction, each.purpose) == (wire, Direction.TO_AGENT, Purpose.DATA)
+        and _acknowledgement(each, system) is not None
+    ]
+
+
+def recovers(publication: Publication, system: System) -> bool:
+    """Whether a publication waits on a wire that loses messages, and what losses lead to has a bound."""
+    message = system.transmissions.get(publication.transmission or "")
+    wires = (each for each in system.network.wires if message is not None and each.name == message.wire)
+    return publication.waits and any(wire.losses and not why_unbounded(wire, system) for wire in wires)
+
+
+def why_unbounded(wire: Wire, system: System) -> str:
+    """Why what is sent again on a wire with losses has no bound; "" if it has one.
+
+    The bound is for a client with one thread, all of whose reliable messages are publications that wait, in one part, on a wire that
+    keeps their order. Reliable messages to the controller have none: later ones wait for a missing one, whose recovery can be long.
+    """
+    sent = acknowledged_from_controller(wire.name, system)
+    published = {each.transmission: each for each in publications(system)}
+    received = [
+        each
+        for each in system.network.transmissions
+        if (each.wire, each.direction, each.purpose) == (wire.name, Direction.TO_CONTROLLER, Purpose.DATA)
+    ]
+    if any(not losses.window for losses in wire.losses):
+        return "with a probability, any number of messages can be lost; state how many are in some time, e.g. '1 per 10 s'"
+    recovery = wire.recovery
+    # The reliable streams of the agent have the same depth in both directions.
+    if (
+        recovery is None
+        or recovery.sent_parts is None
+        or recovery.sent_parts > (recovery.agent_sent_parts or recovery.sent_parts)
+    ):
+        return "it is not known how many messages are sent again at once"
+    if wire.kind in (WireKind.CAN, WireKind.CAN_FD):
+        return "messages with other identifiers overtake those that are sent again"
+    if any(_acknowledgement(each, system) is not None for each in received):
+        return "a reliable message to the controller can wait for a missing one before it"
+    if len(system.executors) != 1 or _has_threads(wire, system):
+        return "several threads use the session"
+    if any(each.name not in published or not published[each.name].waits for each in sent):
+        return "not each reliable message is a publication that waits"
+    if any(publication.timeout is None for publication in published.values() if publication.waits):
+        return "a publication waits without a timeout"
+    if any(parts(reply, system) > 1 for each in sent if (reply := _acknowledgement(each, system)) is not None):
+        return "a message is sent in several parts"
+    return ""
+
+
+def _acknowledgement(message: Transmission, system: System) -> Transmission | None:
+    return next((each for each in system.network.transmissions if each.acknowledges == message.name), None)
+
+
+def _has_threads(wire: Wire, system: System) -> bool:
+    """Whether tasks of the middleware handle messages of a wire."""
+    passed = {name for each in system.network.transmissions if each.wire == wire.name for name in each.processes}
+    return any(isinstance(system.processes.get(name), Task) for name in passed)

@@ -25,8 +25,8 @@ from collections.abc import Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.executors.semantics.loops import longest_wait
+from amalthea_uros.executors.semantics.message_parts import parts
 from amalthea_uros.executors.semantics.readiness import messages, other_threads
-from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.executors import Executor, Handle, Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.system import System
@@ -146,10 +146,12 @@ class ProtocolWrites:
     ----------
     acknowledgements : of heartbeats of the agent; None if that is not known
     heartbeats : of the client; None if that is not known
+    again : messages that are sent again; None if that is not known
     """
 
     acknowledgements: int | None = 1
     heartbeats: int | None = 0
+    again: int | None = 0
 
 
 def acknowledgements(system: System) -> tuple[Transmission, ...]:
@@ -184,15 +186,6 @@ def writing_in_wait(executor: Executor, system: System, sending: Mapping[str, Sp
     if of_messages and executor.waiting.messages_per_wait != 1:
         return Suspension(most=None, why="a wait acknowledges an unknown number of messages")
     return in_sequence([*of_heartbeats, *own, *_longest(of_messages)])
-
-
-def parts(acknowledgement: Transmission, system: System) -> int:
-    """How many parts of a message are acknowledged one by one."""
-    stimuli = set(system.processes[acknowledgement.name].stimuli)
-    counts = (
-        sum(isinstance(each, Trigger) and each.stimulus in stimuli for each in walk(body)) for body in system.software.bodies
-    )
-    return max(1, *counts)
 
 
 def _written(message: Transmission, times: int | None, sending: Mapping[str, Span]) -> Suspension:

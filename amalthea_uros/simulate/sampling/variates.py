@@ -138,7 +138,7 @@ def sampling_assumption(distribution: Distribution[int] | Distribution[float]) -
             return (
                 "unbounded normal distributions are cut off at 6.3 standard deviations, and those of execution times also at 0"
             )
-        case Histogram():
+        case Histogram(buckets) if any(bucket.lower < bucket.upper for bucket in buckets):
             return "all values within an interval of a histogram are equally probable"
     return None
 

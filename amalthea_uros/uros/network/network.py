@@ -109,5 +109,5 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     )
     check_load(plan, context.notes)
     check_reading(plan, system.executors, context.notes)
-    found = with_wire(system, plan, middleware.agent.name, context.assumptions)
+    found = with_wire(system, plan, middleware.agent.name, (*context.assumptions, *plan.assumptions))
     return without_idle(found, planned.receivers.other_triggers)

@@ -15,7 +15,7 @@ from itertools import chain, count
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import Activity, Demand, Execute, SchedulePoint, Trigger
-from amalthea_uros.perf.distributions import Boundaries, Constant, Sampling
+from amalthea_uros.perf.distributions import Boundaries, Bucket, Constant, Histogram, Sampling
 from amalthea_uros.perf.hardware import Clock, Core, CoreType, Structure
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.network import Direction, Losses, Network, Purpose, Recovery, Wire
@@ -27,6 +27,7 @@ from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.uros.network.queueing import Queued
 from amalthea_uros.uros.network.receiving import Receivers
 from amalthea_uros.uros.transports.can import BusLine, arbitration_rank
+from amalthea_uros.uros.transports.framing import BYTES, ESCAPED
 from amalthea_uros.uros.transports.line import Frame, Line
 
 #: A message waits until the wire is free, however many of its kind are queued before it.
@@ -126,6 +127,15 @@ class WirePlan:
         else:
             yield from (self.line.frames(part, queued.transmission.direction) for part in queued.parts)
 
+    @property
+    def assumptions(self) -> Iterator[str]:
+        """What is assumed about frames of which only the longest and the shortest are certain."""
+        if any(frame.weights for parts in self.frames.values() for part in parts for frame in part):
+            yield (
+                f"means and simulations: each byte on {self.name!r} has any of its {BYTES} values as often, "
+                f"{ESCAPED} of which are sent as two bytes"
+            )
+
     @cached_property
     def ranks(self) -> Mapping[str, int]:
         """The order of identifiers, from 0 on: a lower one is sent first; messages without one have that of the client, which loses."""
@@ -224,6 +234,9 @@ def _received(queued: Queued, receivers: Receivers, *, is_last: bool) -> tuple[s
 def _execution(frame: Frame) -> Execute:
     if frame.least == frame.most:
         return Execute(demand=Demand(ticks=Constant(frame.most)))
+    if frame.weights:
+        buckets = (Bucket(lower=ticks, upper=ticks, occurrences=weight) for ticks, weight in frame.weights)
+        return Execute(demand=Demand(ticks=Histogram(tuple(buckets))))
     ticks = Boundaries(lower=frame.least, upper=frame.most, sampling=Sampling.UNIFORM)
     return Execute(demand=Demand(ticks=ticks))
 

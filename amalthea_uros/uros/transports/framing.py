@@ -3,13 +3,18 @@
 A frame has a flag, the addresses of source and destination, the length in two bytes, the message, and a CRC in two bytes
 (eProsima/Micro-XRCE-DDS-Client `src/c/profile/transport/stream_framing/stream_framing_protocol.c`). A byte after the flag that equals
 the flag or the escape byte is sent as two. Client and agent fill a buffer of 42 bytes and write it as soon as it is full.
+
+How many bytes are escaped depends on their values, which are not specified: at most all, and if each value is as frequent as any other,
+2 of 256. Bounds have the former, simulations the latter.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from functools import cache
 from itertools import zip_longest
+from math import comb
 
 from amalthea_uros.uros.transports.line import Frame
 
@@ -21,6 +26,9 @@ CHUNK = 42
 _HEAD = 5
 #: Most bytes that are read at once after the head.
 _PIECE = CHUNK - 1
+#: Values of a byte, and those of them that are escaped: 0x7D and 0x7E.
+BYTES, ESCAPED = 256, 2
+BILLION = 10**9
 
 
 def least_frame(length: int) -> int:
@@ -49,17 +57,58 @@ def reads(frame: int) -> tuple[int, int]:
     return 1 + pieces, 1 + 2 * pieces
 
 
-def spread(least: Sequence[int], most: Sequence[int], bits_per_byte: int) -> tuple[Frame, ...]:
-    """Frames of so many bytes each, in bits; the last ones are only there if bytes are escaped."""
-    frame = cache(lambda low, high: Frame(least=low * bits_per_byte, most=high * bits_per_byte))  # most are equal
-    return tuple(frame(low, high) for low, high in zip_longest(least, most, fillvalue=0))
+def spread(length: int, least: Sequence[int], most: Sequence[int], bits_per_byte: int) -> tuple[Frame, ...]:
+    """Frames of so many bytes each, in bits; the last ones are only there if bytes are escaped.
+
+    Each escaped byte makes the first frame that is not full one byte longer. Values of frames are independent of each other: a later
+    one can be longer although this one is not full.
+
+    Parameters
+    ----------
+    length : of the message, in bytes
+    """
+    frames, before = [], 0
+    for low, high in zip_longest(least, most, fillvalue=0):
+        weights = _weights(length + OVERHEAD - 1, before, high - low)
+        in_bits = tuple(((low + more) * bits_per_byte, weight) for more, weight in weights)
+        frames.append(Frame(least=low * bits_per_byte, most=high * bits_per_byte, weights=in_bits))
+        before += high - low
+    return tuple(frames)
+
+
+@cache
+def _weights(count: int, before: int, room: int) -> tuple[tuple[int, int], ...]:
+    """How many escaped bytes are in a frame with room for so many, and how often, if so many of them are in those before.
+
+    Parameters
+    ----------
+    count : bytes that can be escaped
+    """
+    if not room:
+        return ()
+    chances = _escaped(count)
+    weights = {0: sum(chances[: before + 1])} | dict(enumerate(chances[before + 1 : before + room], 1))
+    weights[room] = sum(chances[before + room :])
+    # What is possible is not excluded, however rare it is.
+    return tuple((more, max(1, weight)) for more, weight in weights.items() if weight or more in (0, room))
+
+
+@cache
+def _escaped(count: int) -> tuple[int, ...]:
+    """How often so many of some random bytes are escaped, from 0 on, in billionths; what is rarer is left out."""
+    counts: list[int] = []
+    while sum(counts) < BILLION - count and len(counts) <= count:
+        number = len(counts)
+        choices = comb(count, number) * ESCAPED**number * (BYTES - ESCAPED) ** (count - number)
+        counts.append(round(Fraction(choices * BILLION, BYTES**count)))
+    return tuple(counts)
 
 
 def in_chunks(length: int, bits_per_byte: int) -> tuple[Frame, ...]:
     """The chunks of the frame with a message of so many bytes."""
-    return spread(chunks(least_frame(length)), chunks(longest_frame(length)), bits_per_byte)
+    return spread(length, chunks(least_frame(length)), chunks(longest_frame(length)), bits_per_byte)
 
 
 def in_bytes(length: int, bits_per_byte: int) -> tuple[Frame, ...]:
     """The bytes of the frame with a message of so many bytes."""
-    return spread((1,) * least_frame(length), (1,) * longest_frame(length), bits_per_byte)
+    return spread(length, (1,) * least_frame(length), (1,) * longest_frame(length), bits_per_byte)

@@ -31,11 +31,15 @@ WireSection: TypeAlias = Can | CanFd | Serial | NetworkSection | UsbCdc | Custom
 class Frame:
     """What is on a wire without interruption, in ticks of its clock: the least and the most that it can take.
 
-    The least is 0 if a message can do without it.
+    Attributes
+    ----------
+    least : 0 if a message can do without it
+    weights : how often it takes how many ticks, the least and the most among them; empty if nothing is known of that
     """
 
     least: int
     most: int
+    weights: tuple[tuple[int, int], ...] = ()
 
     def __post_init__(self) -> None:
         assert 0 <= self.least <= self.most > 0

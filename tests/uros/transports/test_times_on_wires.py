@@ -69,6 +69,24 @@ def test_no_frame_is_outside_the_bounds(message):
         assert max(framing.chunks(frame)) <= 42
 
 
+@pytest.mark.parametrize("frames", [framing.in_chunks, framing.in_bytes])
+@pytest.mark.parametrize("length", [2, INT64, IMU])
+def test_of_random_bytes_one_of_128_is_escaped_on_average(frames, length):
+    """The mean of a sum is the sum of the means: each byte after the flag adds 2/256 of a byte, of 10 bits."""
+    weighted = [frame.weights or ((frame.least, 1),) for frame in frames(length, 10)]
+    means = [sum(ticks * weight for ticks, weight in each) / sum(weight for _, weight in each) for each in weighted]
+    assert sum(means) == pytest.approx(10 * (length + 7 + (length + 6) / 128), rel=1e-6)
+
+
+def test_how_often_bytes_of_a_short_frame_are_escaped():
+    """Of 8 bytes none is escaped with (127/128)**8, and one with 8 (127**7 / 128**8); all 8 are possible."""
+    (frame,) = framing.in_chunks(2, 1)
+    weights = dict(frame.weights)
+    assert (weights[9], weights[10]) == (round(1e9 * (127 / 128) ** 8), round(8e9 * 127**7 / 128**8))
+    assert weights[17] == 1
+    assert sum(weights.values()) == pytest.approx(1e9)
+
+
 def test_dma_takes_a_tick_per_chunk():
     """A message of Imu at 921600 baud and ticks of 1 ms: 8 chunks, so the 125 Hz that users measured
     (micro-ROS/micro_ros_stm32cubemx_utils#72)."""
