@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from functools import partial
 from itertools import islice
 
@@ -64,6 +65,12 @@ class Improvement:
         """Whether all that was met is still met."""
         return not any(each.is_verdict for each in self.drawbacks)
 
+    @property
+    def per_change(self) -> tuple[Fraction, Time]:
+        """Sorts the greatest effect per change first; of what makes a latency bounded, the shortest."""
+        gained = Fraction(0) if self.before is None else Fraction(self.before - self.after, self.change.count)
+        return -gained, self.after
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Improvements(Shown):
@@ -85,6 +92,17 @@ class Improvements(Shown):
     def __repr__(self) -> str:
         best = f"{time_text(self.found[0].after)} by {self.found[0].change.text}" if self.found else "none found"
         return f"<Improvements of {self.chain}, {self.quantity.replace('_', ' ')}: {best}>"
+
+    def recommended(self, limit: Time | None = None) -> Improvement | None:
+        """The change to recommend, of those that break nothing: the one with the greatest effect per change.
+
+        If some keep the limit, only these count, and of them the ones with the fewest changes.
+        """
+        safe = [each for each in self.found if each.is_safe]
+        enough = [each for each in safe if limit is not None and each.after <= limit]
+        if enough:
+            return min(enough, key=lambda each: (each.change.count, each.after))
+        return min(safe, key=lambda each: each.per_change, default=None)
 
     def best(self, count: int) -> tuple[Improvement, ...]:
         """The first ones, of changes of the same values with the same effect only the smallest."""
@@ -219,7 +237,7 @@ def _combination(one: ImprovingChange, other: ImprovingChange) -> ImprovingChang
     if len(set(targets)) < len(targets) or one.communication is not None or other.communication is not None:
         return None
     changes = (*one.changes, *other.changes)
-    return ImprovingChange(text=f"{one.text}, {other.text}", changes=changes, is_stated=True, is_combined=True)
+    return ImprovingChange(text=f"{one.text}, {other.text}", changes=changes, is_stated=True, count=one.count + other.count)
 
 
 def _is_shorter(chain: str, quantity: LatencyQuantity, before: Time | None, for_a_phase: Analysis) -> bool:

@@ -34,14 +34,19 @@ class ImprovingChange:
     changes : of the system or its description; two if priorities are exchanged, more if changes are combined
     communication : of all label accesses; None if it stays
     is_stated : whether the changes are those of a description
-    is_combined : whether several changes are made together that also help one by one
+    count : of the changes that are made together, which also help one by one
     """
 
     text: str
     changes: tuple[Change, ...] = ()
     communication: Communication | None = None
     is_stated: bool = False
-    is_combined: bool = False
+    count: int = 1
+
+    @property
+    def is_combined(self) -> bool:
+        """Whether several changes are made together."""
+        return self.count > 1
 
     @property
     def options(self) -> tuple[str, ...]:

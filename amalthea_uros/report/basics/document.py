@@ -50,10 +50,16 @@ Cell: TypeAlias = str | Badge
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a table; numbers are aligned to the right."""
+    """A column of a table; numbers are aligned to the right.
+
+    Attributes
+    ----------
+    is_spare : whether it is left out where there is no room for it
+    """
 
     title: str
     is_number: bool = False
+    is_spare: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +78,11 @@ class Table:
     def right(self) -> tuple[int, ...]:
         """The columns that are aligned to the right."""
         return tuple(number for number, column in enumerate(self.columns) if column.is_number)
+
+    @property
+    def spare(self) -> tuple[int, ...]:
+        """The columns that can be left out."""
+        return tuple(number for number, column in enumerate(self.columns) if column.is_spare)
 
     @property
     def compact(self) -> Table:
@@ -96,8 +107,8 @@ class Table:
 
 
 def table(caption: str, titles: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Table:
-    """A table; titles that begin with `>` are those of numbers."""
-    columns = [Column(title.removeprefix(">"), title.startswith(">")) for title in titles]
+    """A table; titles that begin with `>` are those of numbers, those that begin with `~` can be left out where there is no room."""
+    columns = [Column(title.lstrip("~>"), ">" in title[:2], title.startswith("~")) for title in titles]
     return Table(caption, columns, list(rows))
 
 

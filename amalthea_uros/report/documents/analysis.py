@@ -32,6 +32,7 @@ from amalthea_uros.report.basics.document import (
 from amalthea_uros.report.documents.missing_values import missing_section
 from amalthea_uros.report.documents.needs import NEEDS_HEADING, needs_table
 from amalthea_uros.report.documents.overloads import overload_sections
+from amalthea_uros.report.wording.answer import answer_lines
 from amalthea_uros.report.wording.cells import (
     UNKNOWN,
     about,
@@ -40,6 +41,7 @@ from amalthea_uros.report.wording.cells import (
     by_core_and_priority,
     deadline_text,
     exactly,
+    load_text,
     priority_text,
     response_ends,
     verdict_badge,
@@ -52,7 +54,7 @@ from amalthea_uros.report.wording.impact import impact_cells, unchanged_text
 from amalthea_uros.services.analyze import AnalysisResult, analysis_result
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, time_text
+from amalthea_uros.units import Rounding, Time, frequency_text, time_text
 
 BAR = 20
 _HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
@@ -65,8 +67,10 @@ def analysis_document(result: AnalysisResult) -> Document:
     analysis = result.analysis
     return document(
         (
-            *_message_chains(analysis),
-            section("Load", _loads(analysis)),
+            *_first_answer(result),
+            *_message_chains(result),
+            section("Load", _loads(cores_of(analysis), "core")),
+            section("Utilisation of wires", _loads(wires_of(analysis), "wire")),
             *overload_sections(analysis),
             section("Response times", response_times(analysis)),
             section(NEEDS_HEADING, execution_times(analysis)),
@@ -107,8 +111,19 @@ def proposal_document(proposal: Proposal) -> Document:
     return document([priorities_section(proposal)])
 
 
-def _message_chains(analysis: Analysis) -> Iterator[Section]:
-    """The latency of messages: a line for one chain, or a table of several."""
+def _first_answer(result: AnalysisResult) -> Iterator[Section]:
+    """What the verdict depends on, what most of it is, and what would help."""
+    if result.answer is not None:
+        first, *others = answer_lines(result.answer)
+        yield section(first, Sentences(others or [""]))
+
+
+def _message_chains(result: AnalysisResult) -> Iterator[Section]:
+    """The latency of messages: a line for one chain unless the answer is about it, or a table of several."""
+    analysis = result.analysis
+    if len(analysis.message_chains) == 1 and result.answer is not None and result.answer.explanation is not None:
+        if result.answer.chain == analysis.message_chains[0]:
+            return
     if len(analysis.message_chains) == 1:
         yield section(headline(analysis.message_chains[0]), Sentences([""]))
     elif analysis.message_chains:
@@ -120,7 +135,19 @@ def latencies_of_messages(analysis: Analysis, remark: str = "why") -> Table:
     return table("Latency of messages, end to end", (*MESSAGE_COLUMNS, remark), map(message_chain_row, analysis.message_chains))
 
 
-def _loads(analysis: Analysis) -> Table:
+def cores_of(analysis: Analysis) -> list[ProcessorResult]:
+    """The cores that execute something, without those that stand for wires."""
+    wires = {core for wire in analysis.solution.context.system.network.wires for core in wire.cores}
+    return [each for each in analysis.processors if each.worst != 0 and each.name not in wires]
+
+
+def wires_of(analysis: Analysis) -> list[ProcessorResult]:
+    """The wires in their directions, on which something is sent."""
+    cores = {each.name for each in cores_of(analysis)}
+    return [each for each in analysis.processors if each.worst != 0 and each.name not in cores]
+
+
+def _loads(processors: Sequence[ProcessorResult], kind: str) -> Table:
     rows = [
         (
             processor.name,
@@ -130,15 +157,15 @@ def _loads(analysis: Analysis) -> Table:
             _worst_load(processor),
             _bar(processor),
         )
-        for processor in analysis.processors
-        if processor.worst != 0
+        for processor in processors
     ]
-    return table("Load of each core", ("core", ">clock", ">best", ">mean", ">worst", ""), rows)
+    clock = "clock" if kind == "core" else "bit rate"
+    return table(f"Load of each {kind}", (kind, f"~>{clock}", ">best", "~>mean", ">worst", "~"), rows)
 
 
 def _percent(load: Fraction | None, rounding: Rounding) -> str:
-    """A load in percent with three decimals; bounds are rounded so that they remain bounds."""
-    return UNKNOWN if load is None else f"{percent_text(load, 3, rounding)}%"
+    """A load in percent; bounds are rounded so that they remain bounds."""
+    return UNKNOWN if load is None else load_text(load, rounding)
 
 
 def _worst_load(processor: ProcessorResult) -> str:

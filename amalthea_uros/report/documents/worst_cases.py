@@ -7,13 +7,12 @@ from functools import partial
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.explanations.chains import explain_chain
-from amalthea_uros.analyze.results.chains import LatencyQuantity
+from amalthea_uros.analyze.results.chains import LIMITED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ChainExplanation
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.basics.document import Block, Figure, Folded, Heading, Section, Sentences
 from amalthea_uros.report.documents.explanation import changes, hops, tried
 from amalthea_uros.report.documents.judged import (
-    LIMITED,
     concerned,
     decisive_quantity,
     judged_items,
