@@ -54,12 +54,12 @@ class Column:
 
     Attributes
     ----------
-    is_spare : whether it is left out where there is no room for it
+    spare : the columns with the highest number are left out first where there is no room for all; 0: never
     """
 
     title: str
     is_number: bool = False
-    is_spare: bool = False
+    spare: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +81,9 @@ class Table:
 
     @property
     def spare(self) -> tuple[int, ...]:
-        """The columns that can be left out."""
-        return tuple(number for number, column in enumerate(self.columns) if column.is_spare)
+        """The columns that can be left out, the first ones first."""
+        found = (number for number, column in enumerate(self.columns) if column.spare)
+        return tuple(sorted(found, key=lambda number: -self.columns[number].spare))
 
     @property
     def compact(self) -> Table:
@@ -106,9 +107,14 @@ class Table:
         return self.rows[len(self.shown) :]
 
 
+def _column(title: str) -> Column:
+    rest = title.lstrip("~")
+    return Column(rest.removeprefix(">"), rest.startswith(">"), len(title) - len(rest))
+
+
 def table(caption: str, titles: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Table:
-    """A table; titles that begin with `>` are those of numbers, those that begin with `~` can be left out where there is no room."""
-    columns = [Column(title.lstrip("~>"), ">" in title[:2], title.startswith("~")) for title in titles]
+    """A table; titles that begin with `>` are those of numbers, those with more `~` before them are left out earlier."""
+    columns = [_column(title) for title in titles]
     return Table(caption, columns, list(rows))
 
 

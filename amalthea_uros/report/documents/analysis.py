@@ -160,7 +160,7 @@ def _loads(processors: Sequence[ProcessorResult], kind: str) -> Table:
         for processor in processors
     ]
     clock = "clock" if kind == "core" else "bit rate"
-    return table(f"Load of each {kind}", (kind, f"~>{clock}", ">best", "~>mean", ">worst", "~"), rows)
+    return table(f"Load of each {kind}", (kind, f"~>{clock}", "~~>best", "~~>mean", ">worst", "~~~"), rows)
 
 
 def _percent(load: Fraction | None, rounding: Rounding) -> str:
@@ -204,9 +204,9 @@ def response_times(analysis: Analysis, is_detailed: bool = False) -> Table:
     columns = (
         "process",
         "core",
-        ">priority",
-        ">WCET",
-        ">best",
+        "~>priority",
+        "~~~>WCET",
+        "~~>best",
         ">worst",
         *(f">{term}" for term in terms),
         ">deadline",
@@ -245,7 +245,7 @@ def execution_times(analysis: Analysis) -> Table:
 
 def callbacks(results: Iterable[CallbackResult]) -> Table:
     """The response times of the callbacks of periodic executors."""
-    columns = ("callback", "process", ">best", ">mean", ">worst", ">deadline", "")
+    columns = ("callback", "~process", "~~>best", "~~~>mean", ">worst", ">deadline", "")
     title = "Callbacks, from the activation of the process to the end of the callback"
     return table(title, columns, map(_callback_row, results))
 
@@ -310,7 +310,7 @@ def _host_row(handle: HandleResult) -> tuple[Cell, ...]:
 def handles(executor: ExecutorResult, is_detailed: bool = False) -> Table:
     """The response times of the handles of an executor, and what can be lost; with how and why if it is detailed."""
     remarks = ("what can be lost, and how", "claim", "why") if is_detailed else ("can lose", "")
-    columns = ("handle", "kind", ">interval", ">best", ">worst", ">late by", *remarks)
+    columns = ("handle", "~~kind", ">interval", "~~~>best", ">worst", "~>late by", *remarks)
     return table(f"Executor {executor.name}", columns, (_handle_row(each, is_detailed) for each in executor.handles))
 
 
@@ -351,7 +351,7 @@ def _chains(chains: Sequence[ChainResult]) -> Table:
 
 def _requirements(analysis: Analysis) -> Table:
     ordered = sorted(analysis.requirements, key=lambda requirement: WORST_FIRST.index(requirement.verdict))
-    columns = ("requirement", "what", "limit", ">value", "verdict", ">margin", "")
+    columns = ("requirement", "~what", "limit", ">value", "verdict", ">margin", "")
     return table("Requirements", columns, map(_requirement_row, ordered))
 
 
@@ -364,13 +364,19 @@ def _requirement_row(requirement: RequirementResult) -> tuple[Cell, ...]:
         _value(requirement),
         verdict_badge(requirement),
         at_least(requirement.margin) if is_certain else "",
-        requirement.reason,
+        "" if _shows_ends(requirement) else requirement.reason,
     )
 
 
 def limit_text(limit: Time, is_upper: bool) -> str:
     """A limit, such as "at most 1 ms"."""
     return f"at {'most' if is_upper else 'least'} {time_text(limit)}"
+
+
+def _shows_ends(requirement: RequirementResult) -> bool:
+    """Whether the value of an unknown verdict is shown with both ends, which its reason only says again."""
+    ends = requirement.lower, requirement.upper
+    return requirement.verdict is Verdict.UNKNOWN and None not in ends and " is between " in requirement.reason
 
 
 def _value(requirement: RequirementResult) -> str:

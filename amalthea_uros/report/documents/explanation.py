@@ -257,7 +257,7 @@ def message_hops(chain: ChainResult) -> Table:
         rows.append((f"{hop.kind}: {hop.name}", at_least(hop.best), at_most(hop.worst), share_text(hop.share), why))
         rows += [(f"- {part.name}", "", at_most(part.most), "", part.why) for part in hop.parts]
     rows.append(("sum", at_least(chain.best or 0), at_most(chain.worst_if_not_lost), "", ""))
-    return table(f"Hops of {chain.name}", ("hop", ">best", ">worst", ">share", ""), rows)
+    return table(f"Hops of {chain.name}", ("hop", "~>best", ">worst", ">share", ""), rows)
 
 
 def _remarks_on_messages(chain: ChainResult) -> Iterator[str]:
@@ -300,7 +300,7 @@ def hops(explanation: ChainExplanation) -> Table:
     if last := explanation.overwritten:
         rows.append(("until overwritten", *empty, at_most(last), "", share_text(explanation.share(last))))
     rows.append(("sum", *empty, at_most(waits + last), at_most(runs), ""))
-    titles = ("process", ">job", ">release", ">start", ">read", ">write", ">wait", ">run", ">share")
+    titles = ("process", ">job", "~~>release", "~~~>start", "~>read", "~>write", ">wait", ">run", ">share")
     return table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows)
 
 
@@ -351,7 +351,7 @@ def changes(found: Improvements) -> Table:
         more = [f"{len(drawbacks) - _MOST_DRAWBACKS:,} more"] if len(drawbacks) > _MOST_DRAWBACKS else []
         worse = "; ".join((*drawbacks[:_MOST_DRAWBACKS], *more))
         rows.append((each.change.text, at_most(each.before), at_most(each.after), str(each.claim), worse))
-    return table("Changes that shorten it", ("what would shorten it", ">before", ">after", "claim", "what gets worse"), rows)
+    return table("Changes that shorten it", ("what would shorten it", "~>before", ">after", "~~claim", "what gets worse"), rows)
 
 
 def tried(found: Improvements) -> str:
