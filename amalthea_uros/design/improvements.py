@@ -212,6 +212,8 @@ class Trial:
 
     def combined(self, ranked: Sequence[Improvement]) -> Iterator[Improvement]:
         """The best changes of a description together, one more at a time, as long as each of them helps."""
+        # What breaks something alone is not recommended together with others either.
+        ranked = [each for each in ranked if each.is_safe] or ranked
         if self.source is None or not ranked:
             return
         best = ranked[0]
