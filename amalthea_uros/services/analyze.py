@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.results.explanations import CallbackExplanation, ChainExplanation, ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
     from amalthea_uros.design.improvements import Improvements
-    from amalthea_uros.services.first_answer import FirstAnswer
     from amalthea_uros.design.missing_values import MissingValues
+    from amalthea_uros.services.first_answer import FirstAnswer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

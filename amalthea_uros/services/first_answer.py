@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass
@@ -34,12 +35,16 @@ class FirstAnswer:
     ----------
     item : what is missed or not proved first, or closest to its limit
     chain : whose latency that is; None for others
+    shares : of the processes of an overloaded core, the largest first
+    is_wire : whether an overloaded core stands for a wire
     explanation : of the latency or response time; None if there is none
     improvements : None if nothing was tried: the limit is met, is not that of a latency, or the system is large
     """
 
     item: Decisive
     chain: ChainResult | None = None
+    shares: tuple[tuple[str, Fraction], ...] = ()
+    is_wire: bool = False
     explanation: ChainExplanation | ProcessExplanation | None = None
     improvements: Improvements | None = None
 
@@ -65,7 +70,9 @@ def answer_about(result: AnalysisResult, item: Decisive, *, with_changes: bool) 
     """The answer about one limit or core."""
     analysis = result.analysis
     if isinstance(item, ProcessorResult):
-        return FirstAnswer(item=item)
+        shares = [(each.name, each.share) for each in analysis.processes if each.processor == item.name and each.share]
+        is_wire = any(item.name in wire.cores for wire in result.system.network.wires)
+        return FirstAnswer(item=item, shares=tuple(sorted(shares, key=lambda each: -each[1])), is_wire=is_wire)
     if isinstance(item, ProcessResult):
         return FirstAnswer(item=item, explanation=explain_process(analysis, item.name))
     quantity = LIMITED.get(item.quantity)
@@ -87,16 +94,28 @@ def is_small(result: AnalysisResult) -> bool:
 
 
 def decisive(analysis: Analysis) -> Decisive | None:
-    """What is missed, or else not proved, or else closest to its limit; latencies of chains first, as people ask for these."""
+    """What is missed, or else not proved, or else closest to its limit.
+
+    An overloaded core comes before all that follows from it, then latencies of chains, as people ask for these.
+    """
     summary = analysis.summary
     if summary.causes:
         roots = [cause.root for cause in summary.causes]
-        return _latency(each for each in roots if isinstance(each, RequirementResult)) or roots[0]
+        overloaded = [each for each in roots if isinstance(each, ProcessorResult)]
+        overloaded += [analysis.processors[core] for root in roots if (core := _core_of(root, analysis)) is not None]
+        latency = _latency(each for each in roots if isinstance(each, RequirementResult))
+        return next(iter(overloaded), None) or latency or roots[0]
     unknown = summary.unexplained or summary.unknown
     if unknown:
         latency = _latency(each for each in unknown if isinstance(each, RequirementResult))
         return latency or min(unknown, key=urgency)
     return summary.tightest
+
+
+def _core_of(root: Decisive, analysis: Analysis) -> str | None:
+    """The overloaded core because of which a process fails."""
+    core = root.overloaded_core if isinstance(root, ProcessResult) else None
+    return core if core is not None and analysis.processors[core].is_overloaded else None
 
 
 def _latency(items: Iterable[RequirementResult]) -> RequirementResult | None:

@@ -57,7 +57,19 @@ def suggestions(keys: Sequence[DescriptionKey], cores: Sequence[str] = ()) -> It
 
 def _is_meant(key: DescriptionKey) -> bool:
     """Whether a key is about an executor, a wire, a task or a message, and not about something else of the same name."""
-    sections = {"loop", "serial", "can", "driver", "subscriptions", "publishers", "timers", "os", "tasks", "executor", "executors"}
+    sections = {
+        "loop",
+        "serial",
+        "can",
+        "driver",
+        "subscriptions",
+        "publishers",
+        "timers",
+        "os",
+        "tasks",
+        "executor",
+        "executors",
+    }
     return not sections.isdisjoint(map(str, key.path)) or key.path[-1] == "semantics"
 
 

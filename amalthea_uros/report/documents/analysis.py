@@ -9,7 +9,6 @@ from math import ceil
 from amalthea_uros.analyze.impact import Effect, Impact
 from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
@@ -31,7 +30,7 @@ from amalthea_uros.report.basics.document import (
 )
 from amalthea_uros.report.documents.missing_values import missing_section
 from amalthea_uros.report.documents.needs import NEEDS_HEADING, needs_table
-from amalthea_uros.report.documents.overloads import overload_sections
+from amalthea_uros.report.documents.overloads import brief, overload_sections
 from amalthea_uros.report.wording.answer import answer_lines
 from amalthea_uros.report.wording.cells import (
     UNKNOWN,
@@ -78,7 +77,7 @@ def analysis_document(result: AnalysisResult) -> Document:
             *map(_executor, analysis.executors),
             *map(_host_executor, analysis.host),
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),
-            section(CHAINS_HEADING, _chains(analysis.chains)),
+            section(CHAINS_HEADING, _chains(analysis)),
             section("Requirements", _requirements(analysis)),
             *([] if result.impact is None else [impact_section(result.impact)]),
             *(
@@ -120,10 +119,10 @@ def _first_answer(result: AnalysisResult) -> Iterator[Section]:
 
 def _message_chains(result: AnalysisResult) -> Iterator[Section]:
     """The latency of messages: a line for one chain unless the answer is about it, or a table of several."""
-    analysis = result.analysis
-    if len(analysis.message_chains) == 1 and result.answer is not None and result.answer.explanation is not None:
-        if result.answer.chain == analysis.message_chains[0]:
-            return
+    analysis, answer = result.analysis, result.answer
+    answered = answer.chain if answer is not None and answer.explanation is not None else None
+    if list(analysis.message_chains) == [answered]:
+        return
     if len(analysis.message_chains) == 1:
         yield section(headline(analysis.message_chains[0]), Sentences([""]))
     elif analysis.message_chains:
@@ -196,7 +195,7 @@ def response_times(analysis: Analysis, is_detailed: bool = False) -> Table:
         (
             *_response_row(each, terms),
             verdict_badge(each) if each.verdict is not None or is_detailed else "-",
-            *_remarks(each, is_detailed),
+            *(_unlike(str(each.failure), brief(remark, analysis)) for remark in _remarks(each, is_detailed)),
         )
         for each in ordered
     ]
@@ -227,6 +226,11 @@ def _response_row(process: ProcessResult, terms: Sequence[str]) -> tuple[Cell, .
         *(at_most(parts[term]) if parts.get(term) else "-" for term in terms),
         deadline_text(process.deadline, process.is_implicit),
     )
+
+
+def _unlike(word: str, remark: str) -> str:
+    """A remark that says more than the word beside it."""
+    return "" if remark == word else remark
 
 
 def _remarks(process: ProcessResult, is_detailed: bool) -> tuple[str, ...]:
@@ -344,18 +348,20 @@ def _metric_row(name: JobMetric, metric: Metric) -> tuple[str, ...]:
     return (words(name), at_least(metric.min), _mean(metric.mean), at_most(metric.max), str(metric.claim))
 
 
-def _chains(chains: Sequence[ChainResult]) -> Table:
-    rows = [(chain.name, *latency_cells(chain, LATENCY_COLUMNS)) for chain in chains]
+def _chains(analysis: Analysis) -> Table:
+    rows = [
+        (chain.name, *(brief(cell, analysis) for cell in latency_cells(chain, LATENCY_COLUMNS))) for chain in analysis.chains
+    ]
     return table("Latencies of event chains", ("chain", *(f">{column}" for column in LATENCY_COLUMNS), ""), rows)
 
 
 def _requirements(analysis: Analysis) -> Table:
     ordered = sorted(analysis.requirements, key=lambda requirement: WORST_FIRST.index(requirement.verdict))
     columns = ("requirement", "~what", "limit", ">value", "verdict", ">margin", "")
-    return table("Requirements", columns, map(_requirement_row, ordered))
+    return table("Requirements", columns, (_requirement_row(each, analysis) for each in ordered))
 
 
-def _requirement_row(requirement: RequirementResult) -> tuple[Cell, ...]:
+def _requirement_row(requirement: RequirementResult, analysis: Analysis) -> tuple[Cell, ...]:
     is_certain = requirement.margin is not None and requirement.verdict is not Verdict.UNKNOWN
     return (
         requirement.name,
@@ -364,7 +370,7 @@ def _requirement_row(requirement: RequirementResult) -> tuple[Cell, ...]:
         _value(requirement),
         verdict_badge(requirement),
         at_least(requirement.margin) if is_certain else "",
-        "" if _shows_ends(requirement) else requirement.reason,
+        "" if _shows_ends(requirement) else brief(requirement.reason, analysis),
     )
 
 

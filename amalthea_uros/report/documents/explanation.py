@@ -34,14 +34,13 @@ if TYPE_CHECKING:
     from amalthea_uros.executors.results import HandleResult
     from amalthea_uros.services.analyze import ChainDetail, Explanation
     from amalthea_uros.services.chains import PathsResult
-    from amalthea_uros.timing.response import Response
 
 #: More executions of the worst case are only counted.
 _MOST_EXECUTIONS = 20
 #: Of the shares in an execution time, the smaller ones are only added up.
 _MOST_SHARES = 20
 #: Further changes shorten a latency less, and further drawbacks of a change are only counted.
-_MOST_CHANGES, _MOST_DRAWBACKS = 5, 3
+_MOST_CHANGES, _MOST_DRAWBACKS = 8, 3
 
 
 def explanation_document(explanation: Explanation) -> Document:
@@ -143,8 +142,7 @@ def _execution(explanation: ProcessExplanation) -> Table:
     if explanation.in_worst_job and any(share.counter is not None for share in shares):
         is_worst = ["yes" if is_executed else "no" for is_executed in explanation.in_worst_job]
     rows = [
-        (*_calls(share), _worst(share.time), _part(share, wcet), worst)
-        for share, worst in zip(shares, is_worst, strict=True)
+        (*_calls(share), _worst(share.time), _part(share, wcet), worst) for share, worst in zip(shares, is_worst, strict=True)
     ]
     # Unknown shares count as the largest.
     order = sorted(range(len(rows)), key=lambda index: (shares[index].time is not None, -(shares[index].time or 0)))

@@ -91,4 +91,6 @@ def opening(content: ReportContent) -> Opening:
     warnings = [(each.rule, each.message) for each in _unreported(content.warnings, rows)]
     reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
     answer = () if content.answer is None else tuple(answer_lines(content.answer))
-    return Opening(tone, _WORDS[tone], closing_line(summary), answer, reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))
+    return Opening(
+        tone, _WORDS[tone], closing_line(summary), answer, reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS)
+    )

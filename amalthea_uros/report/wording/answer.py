@@ -10,11 +10,14 @@ from amalthea_uros.analyze.results.explanations import ChainExplanation, Process
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.verdict import FAILURES, Verdict
-from amalthea_uros.report.wording.cells import at_least, at_most, load_text
+from amalthea_uros.report.wording.cells import at_least, at_most, load_text, relief
 from amalthea_uros.report.wording.chains import remark
 from amalthea_uros.report.wording.largest_part import largest_cause, largest_term
 from amalthea_uros.services.first_answer import FirstAnswer
 from amalthea_uros.units import Rounding, Time, time_text
+
+#: Of an overloaded core, so many processes are named.
+_SHARES = 3
 
 
 def answer_lines(answer: FirstAnswer) -> Iterator[str]:
@@ -27,7 +30,7 @@ def headline(answer: FirstAnswer) -> str:
     """What is limited, its value and limit, and how far they are apart."""
     item = answer.item
     if isinstance(item, ProcessorResult):
-        return f"{item.name}: overloaded, it needs at least {load_text(item.at_least, Rounding.DOWN)} of its time"
+        return f"{item.name}: overloaded, at least {load_text(item.at_least, Rounding.DOWN)} of its time is needed"
     value, limit, bound = _value(item), item.limit, "at most" if item.is_upper else "at least"
     if limit is None:
         return f"{_subject(answer)}: {item.verdict}"
@@ -70,8 +73,8 @@ def _distance(item: ProcessResult | RequirementResult) -> str:
     if item.verdict in FAILURES:
         if (missed := _missed_by(item)) is not None:
             return f"missed by {'' if missed == -(margin or 0) else 'at least '}{at_least(missed)}"
-        word = (item.failure if isinstance(item, ProcessResult) else None) or item.verdict
-        return f"{word}: {item.reason}" if item.reason else str(word)
+        word = str((item.failure if isinstance(item, ProcessResult) else None) or item.verdict)
+        return item.reason if item.reason.startswith(word) else ": ".join(filter(None, (word, item.reason)))
     return f"{item.verdict}" if margin is None else f"{item.verdict}, {at_least(margin)} left"
 
 
@@ -88,11 +91,17 @@ def _missed_by(item: ProcessResult | RequirementResult) -> Time | None:
 def _largest(answer: FirstAnswer) -> str:
     """What takes the largest part."""
     explained, chain = answer.explanation, answer.chain
+    if answer.shares:
+        shares = (f"{name} {load_text(share, Rounding.UP)}" for name, share in answer.shares[:_SHARES])
+        return f"most of it: {', '.join(shares)}"
     if isinstance(explained, ProcessExplanation):
         largest = largest_term(explained)
         return f"largest part: {largest}" if largest else ""
     if chain is not None and chain.crosses_messages:
-        return remark(chain)
+        said = remark(chain)
+        if chain.worst_if_not_lost is not None and chain.loss:
+            return f"at most {at_most(chain.worst_if_not_lost)} for messages that are not lost"
+        return "" if said == getattr(answer.item, "reason", "") else said
     if isinstance(explained, ChainExplanation) and (largest := largest_cause(explained)):
         return f"largest part: {largest}"
     return ""
@@ -101,6 +110,8 @@ def _largest(answer: FirstAnswer) -> str:
 def _help(answer: FirstAnswer) -> Iterator[str]:
     """The change that helps most, and the options to try it."""
     found, best, item = answer.improvements, answer.best, answer.item
+    if isinstance(item, ProcessorResult):
+        yield f"what helps: {relief(item, is_wire=answer.is_wire)}"
     if found is None or not isinstance(item, RequirementResult):
         return
     if best is None:

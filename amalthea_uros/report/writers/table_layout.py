@@ -54,9 +54,7 @@ def table_width(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> int:
     return sum(GAP + width for width in column_widths(headings, cells))
 
 
-def with_footnotes(
-    headings: Sequence[str], cells: Sequence[Sequence[str]], width: int, notes: Footnotes
-) -> list[list[str]]:
+def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]], width: int, notes: Footnotes) -> list[list[str]]:
     """The cells with numbers in the place of remarks that make a table wider than a page, or that many rows have."""
     others = [
         GAP if name in _REMARKS else GAP + column for name, column in zip(headings, column_widths(headings, cells), strict=True)

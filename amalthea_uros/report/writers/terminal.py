@@ -9,13 +9,25 @@ from itertools import groupby, islice, zip_longest
 from pathlib import Path
 from typing import IO
 
+from amalthea_uros._internal.records import replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.report.basics.display import is_coloured, is_standard
 from amalthea_uros.report.basics.escape import output_line, visible
-from amalthea_uros.report.writers.table_layout import GAP, Footnotes, column_widths, folded, glued, left_out, unglued, with_footnotes
+from amalthea_uros.report.writers.table_layout import (
+    GAP,
+    Footnotes,
+    column_widths,
+    folded,
+    glued,
+    left_out,
+    unglued,
+    with_footnotes,
+)
 
 #: Of so many findings of a kind in a row each is written; of more, the first ones.
 _WHOLE = 3
+#: Longer reasons are not repeated.
+_LONG_REASON = 40
 #: Of the others so many places.
 _PLACES = 8
 #: The parts that differ between messages of a kind: names in quotes, and numbers.
@@ -27,6 +39,13 @@ def kind_of_message(finding: Finding) -> tuple[str, Severity, str, str, Path | N
     path = finding.location.path if finding.location else None
     # Gaps of a description need another remedy each.
     return finding.rule, finding.severity, _VARIABLE.sub("", finding.message), _VARIABLE.sub("", finding.help), path
+
+
+def _without_reason_of(before: Finding, finding: Finding) -> Finding:
+    """A finding with a word in place of a long reason that the one before it has, too."""
+    what, _, reason = finding.message.partition(": ")
+    is_repeated = len(reason) > _LONG_REASON and before.message.partition(": ")[2] == reason
+    return replace(finding, message=f"{what}: for the same reason") if is_repeated else finding
 
 
 def _more(findings: Sequence[Finding]) -> str:
@@ -88,8 +107,8 @@ class Terminal:
         for _, run in groupby(findings, kind_of_message):
             alike = list(run)
             shown = _WHOLE if len(alike) > _WHOLE + 1 else len(alike)
-            for finding in alike[:shown]:
-                self.finding(finding)
+            for before, finding in zip([None, *alike], alike[:shown], strict=False):
+                self.finding(finding if before is None else _without_reason_of(before, finding))
             if others := alike[shown:]:
                 self.line(f"  {self.style(_more(others), '2')}")
 
@@ -108,7 +127,9 @@ class Terminal:
         if location.text is None or location.line is None or location.column is None:
             return
         number = str(location.line)
-        room = SNIPPET_WIDTH if self.width is None else max(_NARROWEST_SNIPPET, min(SNIPPET_WIDTH, self.width - len(number) - 11))
+        room = (
+            SNIPPET_WIDTH if self.width is None else max(_NARROWEST_SNIPPET, min(SNIPPET_WIDTH, self.width - len(number) - 11))
+        )
         text, column = _excerpt(location.text, location.column - 1, room)
         tabless = text.replace("\t", " ")
         column = len(visible(tabless[:column]))
@@ -140,7 +161,9 @@ class Terminal:
             missing = left_out(headings, cells, spare, right, self.width)
             kept = [index for index in range(len(headings)) if index not in missing]
             right = [number for number, index in enumerate(kept) if index in right]
-            cells = folded([headings[index] for index in kept], [[row[index] for index in kept] for row in cells], right, self.width)
+            cells = folded(
+                [headings[index] for index in kept], [[row[index] for index in kept] for row in cells], right, self.width
+            )
             missing = [headings[index] for index in sorted(missing)]
             headings = [headings[index] for index in kept]
         widths = column_widths(headings, cells)
