@@ -13,6 +13,7 @@ from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureU
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ChainExplanation
+from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.analyze.system import analyze_while
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration
@@ -22,7 +23,7 @@ from amalthea_uros.design.improving_changes import ImprovingChange, candidates
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.timing.activation.releases import counters, nominal_period
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Rounding, Time, percent_text, time_text
 
 #: The analyses of changed systems: at most so many, fewer for systems with many processes, but always some.
 MAX_ANALYSES, MIN_ANALYSES = 24, 4
@@ -156,6 +157,8 @@ def rank(improvement: Improvement) -> tuple[Time, bool]:
     return improvement.after, not improvement.is_safe
 
 
+#: A part of the time of a core that is worth mentioning.
+_MUCH_LOAD = Fraction(1, 10)
 #: Of the combinations, so many are shown, those with the most changes.
 _SHOWN_COMBINATIONS = 2
 #: So many changes are tried together at most: the more there are, the less is known of which of them are needed.
@@ -320,6 +323,9 @@ def _drawbacks(
     for core in after.processors:
         if core.is_overloaded and not before.processors[core.name].is_overloaded:
             yield Drawback(name=core.name, before="not overloaded", after="overloaded", is_verdict=True)
+        elif _needs_much_more(before.processors[core.name], core):
+            loads = [percent_text(each.worst or each.at_least, 1, Rounding.UP) for each in (before.processors[core.name], core)]
+            yield Drawback(name=f"load of {core.name}", before=f"{loads[0]} %", after=f"{loads[1]} %", is_verdict=False)
     for quantity, (then, now) in latencies.items():
         if then is not None and (now is None or now > then):
             yield Drawback(name=quantity.replace("_", " "), before=_text(then), after=_text(now), is_verdict=False)
@@ -327,6 +333,12 @@ def _drawbacks(
         if row.part is ResultPart.CHAIN and row.object != chain and row.before is not None and row.after is not None:
             name = f"{row.quantity.replace('_', ' ')} of {row.object}"
             yield Drawback(name=name, before=_text(row.before.value), after=_text(row.after.value), is_verdict=False)
+
+
+def _needs_much_more(before: ProcessorResult, after: ProcessorResult) -> bool:
+    """Whether the worst load of a core rises by more than a tenth of its time."""
+    loads = before.worst, after.worst
+    return None not in loads and (after.worst or 0) - (before.worst or 0) > _MUCH_LOAD
 
 
 def _verdict(figure: ComparedFigure | None) -> str:

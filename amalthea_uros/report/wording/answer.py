@@ -18,6 +18,8 @@ from amalthea_uros.units import Rounding, Time, time_text
 
 #: Of an overloaded core, so many processes are named.
 _SHARES = 3
+#: Of a change, so many drawbacks.
+_DRAWBACKS = 2
 
 
 def answer_lines(answer: FirstAnswer) -> Iterator[str]:
@@ -121,4 +123,7 @@ def _help(answer: FirstAnswer) -> Iterator[str]:
     if item.limit is not None:
         verdict = ", limit met" if best.after <= item.limit else f", still {at_most(best.after - item.limit)} above"
     yield f"best change: {best.change.text}: at most {at_most(best.after, item.limit)}{verdict}"
+    if best.drawbacks:
+        worse = (f"{each.name}: {each.before} -> {each.after}" for each in best.drawbacks[:_DRAWBACKS])
+        yield f"what it makes worse: {'; '.join(worse)}"
     yield f"to see all its effects: {shlex.join(best.change.options)}"

@@ -69,12 +69,25 @@ def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]], widt
     return [[shown(heading, cell) for heading, cell in zip(headings, row, strict=True)] for row in cells]
 
 
+def _longest(cell: str) -> int:
+    """The longest line of a cell."""
+    return max(map(len, cell.split("\n")))
+
+
+def folded_headings(headings: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[str]:
+    """The headings of a table that is too wide in several lines, where they are longer than what is below them."""
+    if table_width(headings, cells) <= width:
+        return list(headings)
+    below = column_widths([""] * len(headings), cells)
+    return [_folded_cell(each, max(column, _NARROWEST)) for each, column in zip(headings, below, strict=True)]
+
+
 def left_out(
     headings: Sequence[str], cells: Sequence[Sequence[str]], spare: Sequence[int], fixed: Collection[int], width: int
 ) -> list[int]:
     """The columns without which a table fits, in the order of `spare`; none if it fits when its text is folded."""
     widths = [
-        column if index in fixed else min(column, max(_COMFORTABLE, len(headings[index])))
+        column if index in fixed else min(column, max(_COMFORTABLE, _longest(headings[index])))
         for index, column in enumerate(column_widths(headings, cells))
     ]
     found: list[int] = []
@@ -97,7 +110,7 @@ def folded(headings: Sequence[str], cells: Sequence[Sequence[str]], fixed: Colle
     for column in sorted(set(range(len(widths))) - set(fixed), key=lambda column: -widths[column]):
         if excess <= 0:
             break
-        narrower = max(widths[column] - excess, min(widths[column], _NARROWEST), len(headings[column]))
+        narrower = max(widths[column] - excess, min(widths[column], _NARROWEST), _longest(headings[column]))
         excess -= widths[column] - narrower
         widths[column] = narrower
     return [[_folded_cell(cell, limit) for cell, limit in zip(row, widths, strict=True)] for row in cells]

@@ -18,6 +18,7 @@ from amalthea_uros.report.writers.table_layout import (
     Footnotes,
     column_widths,
     folded,
+    folded_headings,
     glued,
     left_out,
     unglued,
@@ -155,17 +156,16 @@ class Terminal:
         spare : columns that are left out where there is no room for them
         """
         cells = [[visible(str(cell)) for cell in row] for row in rows]
-        before, missing = len(self.notes), list[int]()
+        before, missing = len(self.notes), list[str]()
         cells = with_footnotes(headings, cells, self.width or WIDTH_ELSEWHERE, self.notes)
         if self.width is not None:
-            missing = left_out(headings, cells, spare, right, self.width)
-            kept = [index for index in range(len(headings)) if index not in missing]
-            right = [number for number, index in enumerate(kept) if index in right]
-            cells = folded(
-                [headings[index] for index in kept], [[row[index] for index in kept] for row in cells], right, self.width
-            )
-            missing = [headings[index] for index in sorted(missing)]
+            headings = folded_headings(headings, cells, self.width)
+            without = left_out(headings, cells, spare, right, self.width)
+            kept = [index for index in range(len(headings)) if index not in without]
+            missing = [headings[index].replace("\n", " ") for index in sorted(without) if headings[index]]
             headings = [headings[index] for index in kept]
+            right = [number for number, index in enumerate(kept) if index in right]
+            cells = folded(headings, [[row[index] for index in kept] for row in cells], right, self.width)
         widths = column_widths(headings, cells)
         for is_heading, row in [(True, list(headings)), *((False, row) for row in cells)]:
             for line in zip_longest(*(cell.split("\n") for cell in row), fillvalue=""):
@@ -175,8 +175,8 @@ class Terminal:
                 ]
                 text = (" " * GAP).join(padded).rstrip()
                 self._write((" " * GAP + (self.style(text, "2") if is_heading else text)).rstrip())
-        if named := ", ".join(filter(None, missing)):
-            self.line(f"{' ' * GAP}(no room for: {named})")
+        if missing:
+            self.line(f"{' ' * GAP}(no room for: {', '.join(missing)})")
         for note in self.notes.from_number(before + 1):
             self.line(" " * GAP + note)
 
