@@ -118,6 +118,11 @@ def analyze(
 
         with working("Explaining"):
             result = replace(result, explanation=explain(result, explained, LatencyQuantity(quantity)))
+    elif is_whole:
+        from amalthea_uros.services.first_answer import first_answer
+
+        with working("Trying changes"):
+            result = replace(result, answer=first_answer(result))
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     if target is not None:
         write_changed(paths, changes, settings, target)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from functools import partial
 from itertools import islice
 
@@ -12,6 +13,7 @@ from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureU
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ChainExplanation
+from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.analyze.system import analyze_while
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration
@@ -21,7 +23,7 @@ from amalthea_uros.design.improving_changes import ImprovingChange, candidates
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.timing.activation.releases import counters, nominal_period
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Rounding, Time, percent_text, time_text
 
 #: The analyses of changed systems: at most so many, fewer for systems with many processes, but always some.
 MAX_ANALYSES, MIN_ANALYSES = 24, 4
@@ -64,6 +66,12 @@ class Improvement:
         """Whether all that was met is still met."""
         return not any(each.is_verdict for each in self.drawbacks)
 
+    @property
+    def per_change(self) -> tuple[Fraction, Time]:
+        """Sorts the greatest effect per change first; of what makes a latency bounded, the shortest."""
+        gained = Fraction(0) if self.before is None else Fraction(self.before - self.after, self.change.count)
+        return -gained, self.after
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Improvements(Shown):
@@ -85,6 +93,17 @@ class Improvements(Shown):
     def __repr__(self) -> str:
         best = f"{time_text(self.found[0].after)} by {self.found[0].change.text}" if self.found else "none found"
         return f"<Improvements of {self.chain}, {self.quantity.replace('_', ' ')}: {best}>"
+
+    def recommended(self, limit: Time | None = None) -> Improvement | None:
+        """The change to recommend, of those that break nothing: the one with the greatest effect per change.
+
+        If some keep the limit, only these count, and of them the ones with the fewest changes.
+        """
+        safe = [each for each in self.found if each.is_safe]
+        enough = [each for each in safe if limit is not None and each.after <= limit]
+        if enough:
+            return min(enough, key=lambda each: (each.change.count, each.after))
+        return min(safe, key=lambda each: each.per_change, default=None)
 
     def best(self, count: int) -> tuple[Improvement, ...]:
         """The first ones, of changes of the same values with the same effect only the smallest."""
@@ -138,6 +157,8 @@ def rank(improvement: Improvement) -> tuple[Time, bool]:
     return improvement.after, not improvement.is_safe
 
 
+#: A part of the time of a core that is worth mentioning.
+_MUCH_LOAD = Fraction(1, 10)
 #: Of the combinations, so many are shown, those with the most changes.
 _SHOWN_COMBINATIONS = 2
 #: So many changes are tried together at most: the more there are, the less is known of which of them are needed.
@@ -194,6 +215,8 @@ class Trial:
 
     def combined(self, ranked: Sequence[Improvement]) -> Iterator[Improvement]:
         """The best changes of a description together, one more at a time, as long as each of them helps."""
+        # What breaks something alone is not recommended together with others either.
+        ranked = [each for each in ranked if each.is_safe] or ranked
         if self.source is None or not ranked:
             return
         best = ranked[0]
@@ -219,7 +242,7 @@ def _combination(one: ImprovingChange, other: ImprovingChange) -> ImprovingChang
     if len(set(targets)) < len(targets) or one.communication is not None or other.communication is not None:
         return None
     changes = (*one.changes, *other.changes)
-    return ImprovingChange(text=f"{one.text}, {other.text}", changes=changes, is_stated=True, is_combined=True)
+    return ImprovingChange(text=f"{one.text}, {other.text}", changes=changes, is_stated=True, count=one.count + other.count)
 
 
 def _is_shorter(chain: str, quantity: LatencyQuantity, before: Time | None, for_a_phase: Analysis) -> bool:
@@ -300,6 +323,9 @@ def _drawbacks(
     for core in after.processors:
         if core.is_overloaded and not before.processors[core.name].is_overloaded:
             yield Drawback(name=core.name, before="not overloaded", after="overloaded", is_verdict=True)
+        elif _needs_much_more(before.processors[core.name], core):
+            loads = [percent_text(each.worst or each.at_least, 1, Rounding.UP) for each in (before.processors[core.name], core)]
+            yield Drawback(name=f"load of {core.name}", before=f"{loads[0]} %", after=f"{loads[1]} %", is_verdict=False)
     for quantity, (then, now) in latencies.items():
         if then is not None and (now is None or now > then):
             yield Drawback(name=quantity.replace("_", " "), before=_text(then), after=_text(now), is_verdict=False)
@@ -307,6 +333,12 @@ def _drawbacks(
         if row.part is ResultPart.CHAIN and row.object != chain and row.before is not None and row.after is not None:
             name = f"{row.quantity.replace('_', ' ')} of {row.object}"
             yield Drawback(name=name, before=_text(row.before.value), after=_text(row.after.value), is_verdict=False)
+
+
+def _needs_much_more(before: ProcessorResult, after: ProcessorResult) -> bool:
+    """Whether the worst load of a core rises by more than a tenth of its time."""
+    loads = before.worst, after.worst
+    return None not in loads and (after.worst or 0) - (before.worst or 0) > _MUCH_LOAD
 
 
 def _verdict(figure: ComparedFigure | None) -> str:

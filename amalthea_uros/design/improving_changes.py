@@ -34,14 +34,19 @@ class ImprovingChange:
     changes : of the system or its description; two if priorities are exchanged, more if changes are combined
     communication : of all label accesses; None if it stays
     is_stated : whether the changes are those of a description
-    is_combined : whether several changes are made together that also help one by one
+    count : of the changes that are made together, which also help one by one
     """
 
     text: str
     changes: tuple[Change, ...] = ()
     communication: Communication | None = None
     is_stated: bool = False
-    is_combined: bool = False
+    count: int = 1
+
+    @property
+    def is_combined(self) -> bool:
+        """Whether several changes are made together."""
+        return self.count > 1
 
     @property
     def options(self) -> tuple[str, ...]:
@@ -71,7 +76,7 @@ def candidates(
     """
     processes = _by_share(explanation, analysis)
     sorts = (
-        () if source is None else _of_description(source),
+        () if source is None else _of_description(source, _cores(present.system)),
         _periods(processes, analysis.solution.context.system, offered),
         _priorities(processes, analysis),
         _offsets(explanation, analysis.solution.context.system),
@@ -154,9 +159,20 @@ def _clocks(processes: Sequence[str], analysis: Analysis) -> Iterator[ImprovingC
             yield _of_process(core, "frequency", frequency_text(frequency), frequency_text(2 * frequency))
 
 
-def _of_description(source: DescriptionOrigin) -> Iterator[ImprovingChange]:
-    for each in suggestions(source.keys):
+def _cores(system: System) -> list[str]:
+    """The cores of the controller: those that stand for wires or belong to others are not available."""
+    wires = {core for wire in system.network.wires for core in wire.cores}
+    return [name for name in system.cores if name not in wires]
+
+
+def _of_description(source: DescriptionOrigin, cores: Sequence[str]) -> Iterator[ImprovingChange]:
+    every = list(suggestions(source.keys, cores))
+    for each in every:
         yield ImprovingChange(text=each.text, changes=(each.change,), is_stated=True)
+        # A sleep is at least a tick long, so that neither is of use alone.
+        for tick in (other for other in every if (other.change.key, each.change.key) == ("tick", "sleep")):
+            changes = (tick.change, each.change)
+            yield ImprovingChange(text=f"{tick.text}, {each.text}", changes=changes, is_stated=True, count=2)
 
 
 def _communication(explanation: ChainExplanation, present: Configuration) -> Iterator[ImprovingChange]:

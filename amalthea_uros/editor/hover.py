@@ -10,11 +10,14 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.errors import AmurosError
+from amalthea_uros.judge.summary import urgency
 from amalthea_uros.report.documents.explanation import explanation_document
+from amalthea_uros.report.wording.answer import answer_lines, headline
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.report.writers.text import write_document
 from amalthea_uros.services.analyze import AnalysisResult, analyze_files
 from amalthea_uros.services.explain import explain
+from amalthea_uros.services.first_answer import answer_about, first_answer
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
@@ -40,7 +43,23 @@ def hover_text(result: AnalysisResult, name: str) -> str:
     Markdown; what is not ours is in a block of code.
     """
     analysis = result.analysis
-    return "\n\n".join([*_verdicts(analysis, name), *_explained(result, name)])
+    return "\n\n".join([*_answer(result, name), *_verdicts(analysis, name), *_explained(result, name)])
+
+
+def _answer(result: AnalysisResult, name: str) -> Iterator[str]:
+    """Of the name of the description, the one answer of the analysis; of a chain, that about its most urgent limit."""
+    analysis, changed = result.analysis, result.changed
+    assembly = None if changed is None else changed.opened.assembly
+    if assembly is not None and name == assembly.description.name:
+        answer = first_answer(result)
+        if answer is not None:
+            yield from _code(answer_lines(answer))
+    elif name in result.system.chains:
+        limits = [each for each in analysis.requirements if each.object == name]
+        if limits:
+            # Its explanation, which follows, tries the changes.
+            about = answer_about(result, min(limits, key=urgency), with_changes=False)
+            yield from _code([headline(about)])
 
 
 def _verdicts(analysis: Analysis, name: str) -> Iterator[str]:

@@ -15,7 +15,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.judge.evidence import Ends, ObservedProcess, ObservedValues, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import SystemLimit
-from amalthea_uros.units import Time, number_text, time_text
+from amalthea_uros.units import Rounding, Time, number_text, rounded_time_text, time_text
 
 
 class Verdict(StrEnum):
@@ -181,12 +181,17 @@ def _undecided(limit: SystemLimit, ends: Ends) -> str:
     what = "maximum" if limit.is_upper else "minimum"
     match ends.lower, ends.upper:
         case int(lower), int(upper):
-            return f"the {what} is between {_text(limit, lower)} and {_text(limit, upper)}"
+            return f"the {what} is between {_outward(limit, lower, Rounding.DOWN)} and {_outward(limit, upper, Rounding.UP)}"
         case int(lower), None:
-            return f"the {what} is at least {_text(limit, lower)}, and no upper bound is known"
+            return f"the {what} is at least {_outward(limit, lower, Rounding.DOWN)}, and no upper bound is known"
         case None, int(upper):
-            return f"the {what} is at most {_text(limit, upper)}, and no lower bound is known"
+            return f"the {what} is at most {_outward(limit, upper, Rounding.UP)}, and no lower bound is known"
     return f"the {what} is unknown"
+
+
+def _outward(limit: SystemLimit, value: Time, rounding: Rounding) -> str:
+    """An end with four digits that is still a bound, and on the same side of the limit."""
+    return rounded_time_text(value, rounding, limit.time) if limit.is_time else number_text(value)
 
 
 def _text(limit: SystemLimit, value: Time) -> str:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.sensitivity import Sensitivity
     from amalthea_uros.design.improvements import Improvements
     from amalthea_uros.design.missing_values import MissingValues
+    from amalthea_uros.services.first_answer import FirstAnswer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -68,6 +69,7 @@ class AnalysisResult(Brief, Shown):
     with_metrics : whether the metrics of all processes are shown
     differences : what changes did before the analysis
     impact : what they do to the results; None without changes
+    answer : the one answer that text begins with; None if it is not wanted, or nothing was judged
     missing : what can be stated so that more processes have a response time; None if it is not wanted, or nothing helps
     """
 
@@ -86,6 +88,7 @@ class AnalysisResult(Brief, Shown):
     differences: tuple[Difference, ...] = ()
     impact: Impact | None = None
     missing: MissingValues | None = None
+    answer: FirstAnswer | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,8 +16,10 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.activities import Call, walk
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.check import check_input
+from amalthea_uros.services.first_answer import FirstAnswer, first_answer
 from amalthea_uros.services.inputs import ModelInput
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.services.subject import Subject, SystemInput
@@ -60,6 +62,7 @@ class ReportContent:
     is_duration_chosen : whether the duration was chosen to bound the work
     check : the findings of the rules; None if there is no model, but only a system
     findings : of reading, analysis and simulation, without those of the rules
+    answer : what the verdict depends on, and what would help; None if nothing was judged
     assembly : what an `app.yaml` says beyond the system: messages, pools
     """
 
@@ -75,6 +78,7 @@ class ReportContent:
     is_duration_chosen: bool = False
     check: Presentation | None = None
     findings: tuple[Finding, ...] = ()
+    answer: FirstAnswer | None = None
     assembly: Assembly | None = None
 
     @property
@@ -140,7 +144,21 @@ def compile_report(
         is_duration_chosen=duration is None,
         check=None if model is None else check_input(model, next(iter(_files(opened)), Path())),
         findings=tuple(dict.fromkeys(unsuppressed(findings))),
+        answer=first_answer(_analyzed(changed, analysis)),
         assembly=None if opened.assembly is None else with_analysed_storage(opened.assembly, before or analysis),
+    )
+
+
+def _analyzed(changed: ChangedSystem, analysis: Analysis) -> AnalysisResult:
+    """The analysis as a result, of which changes are tried."""
+    return AnalysisResult(
+        paths=(),
+        task_periods=changed.opened.task_periods,
+        changed=changed,
+        system=changed.system,
+        settings=changed.settings,
+        analysis=analysis,
+        findings=(),
     )
 
 

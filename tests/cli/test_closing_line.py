@@ -98,7 +98,7 @@ class TestUnknown:
     def test_what_fails_is_chosen(self, fail_on, code, tmp_path):
         line, found = closing(tmp_path, self.UNKNOWN, "--fail-on", fail_on)
         assert (line, found) == (
-            "Schedulable: unknown: 1 of 2, because of 'U': the maximum is between 15 ms and 27 ms",
+            "Not proved schedulable: 1 of 2 is unknown, because of 'U': the maximum is between 15 ms and 27 ms",
             code,
         )
 
@@ -110,7 +110,7 @@ class TestUnknown:
         path = tmp_path / "app.yaml"
         path.write_text(self.UNKNOWN)
         run = amuros("analyze", path, "--output", f"json={tmp_path / 'r.json'}")
-        assert "Schedulable: unknown: 1 of 2" in run.stderr
+        assert "Not proved schedulable: 1 of 2" in run.stderr
         assert json.loads((tmp_path / "r.json").read_text())["summary"] == {
             "schedulable": "unknown",
             "missed": 0,
@@ -119,7 +119,7 @@ class TestUnknown:
             "judged": 2,
             "overloaded": [],
             "tightest": {"name": "I", "margin_ps": 14 * 10**9},
-            "text": "Schedulable: unknown: 1 of 2, because of 'U': the maximum is between 15 ms and 27 ms",
+            "text": "Not proved schedulable: 1 of 2 is unknown, because of 'U': the maximum is between 15 ms and 27 ms",
         }
 
 

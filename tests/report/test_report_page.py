@@ -174,7 +174,7 @@ def test_a_model_without_anything_is_unknown(tmp_path):
         '<am:Amalthea xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:am="http://app4mc.eclipse.org/amalthea/3.3.0"/>'
     )
     page = report(path).html
-    assert "Unknown whether schedulable" in text(section(page, "verdict"))
+    assert "Not proved schedulable" in text(section(page, "verdict"))
 
 
 def test_what_fails_and_what_is_unknown_comes_first():

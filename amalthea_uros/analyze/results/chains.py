@@ -52,6 +52,8 @@ EXPLAINED: tuple[LatencyQuantity, ...] = (
     LatencyQuantity.MAX_DATA_AGE,
     LatencyQuantity.MAX_REDUCED_DATA_AGE,
 )
+#: The latencies that limits of chains by these names limit.
+LIMITED = {"reaction": LatencyQuantity.MAX_REDUCED_REACTION_TIME, "data age": LatencyQuantity.MAX_REDUCED_DATA_AGE}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.description.keys import DescriptionKey, short_name
 from amalthea_uros.spec.written import Written
-from amalthea_uros.units import parse_bit_rate, parse_time
+from amalthea_uros.units import parse_bit_rate, parse_data_size, parse_time, time_text
 
 #: The rate up to which USB bridges and most controllers go without special care; that of the examples for fast boards.
 _BAUD_RATE = 921_600
@@ -16,6 +16,8 @@ _BAUD_RATE = 921_600
 _BITRATE = "1 Mbit/s"
 #: The shortest sleep and timeout that are tried: the tick that most ports have.
 _SHORTEST = "1 ms"
+#: Bytes: of smaller messages, the headers are most of what is sent.
+_SMALL_MESSAGE = 16
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,29 +33,78 @@ class Suggestion:
     change: Change
 
 
-def suggestions(keys: Sequence[DescriptionKey]) -> Iterator[Suggestion]:
-    """The values to try, in the order of how easy they are to change."""
-    for last, others in _VALUES.items():
+def suggestions(keys: Sequence[DescriptionKey], cores: Sequence[str] = ()) -> Iterator[Suggestion]:
+    """The values to try, in the order of how easy they are to change.
+
+    Parameters
+    ----------
+    cores : those of the controller
+    """
+    executors = [key.names[-2] for key in keys if key.path[-1] == "loop" and "executors" in key.path]
+    values = {
+        **_VALUES,
+        "runs_in": lambda present: _others(present, ("own-task", *executors)),
+        "core": lambda present: _others(present, cores),
+        "message_size": _smaller,
+    }
+    defaults = {"runs_in": "executor", "core": next(iter(cores), None)}
+    for last, others in values.items():
         for key in keys:
-            if key.path[-1] == last and _is_meant(key):
-                yield from (_suggestion(key, value, keys) for value in others(key.value))
+            if key.path[-1] == last and _is_meant(key) and not _is_tried_elsewhere(key):
+                present = defaults.get(last) if key.value is None else key.value
+                yield from (_suggestion(key, present, value, keys) for value in others(present))
 
 
 def _is_meant(key: DescriptionKey) -> bool:
-    """Whether a key is about an executor, a wire or a message, and not about something else of the same name."""
-    sections = {"loop", "serial", "can", "driver", "subscriptions", "publishers"}
+    """Whether a key is about an executor, a wire, a task or a message, and not about something else of the same name."""
+    sections = {
+        "loop",
+        "serial",
+        "can",
+        "driver",
+        "subscriptions",
+        "publishers",
+        "timers",
+        "os",
+        "tasks",
+        "executor",
+        "executors",
+    }
     return not sections.isdisjoint(map(str, key.path)) or key.path[-1] == "semantics"
 
 
-def _suggestion(key: DescriptionKey, value: str, keys: Sequence[DescriptionKey]) -> Suggestion:
+def _is_tried_elsewhere(key: DescriptionKey) -> bool:
+    """Whether a period is that of a process that is built, whose periods, priorities and offsets are tried alike in all systems."""
+    return key.path[-1] == "period" and "timers" not in key.path
+
+
+def _suggestion(key: DescriptionKey, present: Written | None, value: str, keys: Sequence[DescriptionKey]) -> Suggestion:
     target = short_name(key, keys)
     name, _, last = target.rpartition(".")
-    return Suggestion(text=f"{target} {key.value} -> {value}", change=Change(name, last, compact(value)))
+    return Suggestion(text=f"{target} {present} -> {value}", change=Change(name, last, compact(value)))
 
 
 def _shorter(present: Written | None) -> Iterator[str]:
     if isinstance(present, str) and parse_time(present) > parse_time(_SHORTEST):
         yield _SHORTEST
+
+
+def _half(present: Written | None) -> Iterator[str]:
+    """Of the period of a timer."""
+    if isinstance(present, str) and parse_time(present) % 2 == 0:
+        yield time_text(parse_time(present) // 2)
+
+
+def _smaller(present: Written | None) -> Iterator[str]:
+    """Half of a message, as one that has a narrower type of its numbers, or leaves out what nobody uses."""
+    size = parse_data_size(present) // 8 if isinstance(present, str) else 0
+    if size >= _SMALL_MESSAGE:
+        yield f"{size // 2} B"
+
+
+def _others(present: Written | None, offered: Sequence[str]) -> Iterator[str]:
+    """What is available besides the present one."""
+    yield from (each for each in dict.fromkeys(offered) if each != present)
 
 
 def _faster_line(present: Written | None) -> Iterator[str]:
@@ -87,10 +138,13 @@ _VALUES: Mapping[str, Callable[[Written | None], Iterator[str]]] = {
     "sleep": _shorter,
     "spin_some": _shorter,
     "spin_period": _shorter,
+    "timeout": _shorter,
+    "tick": _shorter,
     "write": _without_ticks,
     "read": _without_ticks,
     "baud_rate": _faster_line,
     "bitrate": _faster_bus,
     "reliability": _unacknowledged,
     "semantics": _at_once,
+    "period": _half,
 }

@@ -45,18 +45,19 @@ def is_coloured(stream: IO[str]) -> bool:
     if colours is Colours.NEVER:
         return False
     if colours is Colours.ALWAYS:
-        return _is_standard(stream)
+        return is_standard(stream)
     if os.environ.get("NO_COLOR"):
         return False
-    if os.environ.get("FORCE_COLOR") and _is_standard(stream):
+    if os.environ.get("FORCE_COLOR") and is_standard(stream):
         return True
     return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
 def is_brief(stream: IO[str]) -> bool:
     """Whether a stream gets the closing line of a result only; what is written to a file is always whole."""
-    return DISPLAY.get().is_quiet and _is_standard(stream)
+    return DISPLAY.get().is_quiet and is_standard(stream)
 
 
-def _is_standard(stream: IO[str]) -> bool:
+def is_standard(stream: IO[str]) -> bool:
+    """Whether a stream is standard output or standard error."""
     return stream in (sys.stdout, sys.stderr)

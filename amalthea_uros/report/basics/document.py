@@ -50,10 +50,16 @@ Cell: TypeAlias = str | Badge
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a table; numbers are aligned to the right."""
+    """A column of a table; numbers are aligned to the right.
+
+    Attributes
+    ----------
+    spare : the columns with the highest number are left out first where there is no room for all; 0: never
+    """
 
     title: str
     is_number: bool = False
+    spare: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +78,12 @@ class Table:
     def right(self) -> tuple[int, ...]:
         """The columns that are aligned to the right."""
         return tuple(number for number, column in enumerate(self.columns) if column.is_number)
+
+    @property
+    def spare(self) -> tuple[int, ...]:
+        """The columns that can be left out, the first ones first."""
+        found = (number for number, column in enumerate(self.columns) if column.spare)
+        return tuple(sorted(found, key=lambda number: -self.columns[number].spare))
 
     @property
     def compact(self) -> Table:
@@ -95,9 +107,14 @@ class Table:
         return self.rows[len(self.shown) :]
 
 
+def _column(title: str) -> Column:
+    rest = title.lstrip("~")
+    return Column(rest.removeprefix(">"), rest.startswith(">"), len(title) - len(rest))
+
+
 def table(caption: str, titles: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Table:
-    """A table; titles that begin with `>` are those of numbers."""
-    columns = [Column(title.removeprefix(">"), title.startswith(">")) for title in titles]
+    """A table; titles that begin with `>` are those of numbers, those with more `~` before them are left out earlier."""
+    columns = [_column(title) for title in titles]
     return Table(caption, columns, list(rows))
 
 

@@ -9,7 +9,6 @@ from math import ceil
 from amalthea_uros.analyze.impact import Effect, Impact
 from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
@@ -31,7 +30,8 @@ from amalthea_uros.report.basics.document import (
 )
 from amalthea_uros.report.documents.missing_values import missing_section
 from amalthea_uros.report.documents.needs import NEEDS_HEADING, needs_table
-from amalthea_uros.report.documents.overloads import overload_sections
+from amalthea_uros.report.documents.overloads import brief, overload_sections
+from amalthea_uros.report.wording.answer import answer_lines
 from amalthea_uros.report.wording.cells import (
     UNKNOWN,
     about,
@@ -40,6 +40,7 @@ from amalthea_uros.report.wording.cells import (
     by_core_and_priority,
     deadline_text,
     exactly,
+    load_text,
     priority_text,
     response_ends,
     verdict_badge,
@@ -52,7 +53,7 @@ from amalthea_uros.report.wording.impact import impact_cells, unchanged_text
 from amalthea_uros.services.analyze import AnalysisResult, analysis_result
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.units import Rounding, Time, frequency_text, percent_text, time_text
+from amalthea_uros.units import Rounding, Time, frequency_text, time_text
 
 BAR = 20
 _HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
@@ -65,8 +66,10 @@ def analysis_document(result: AnalysisResult) -> Document:
     analysis = result.analysis
     return document(
         (
-            *_message_chains(analysis),
-            section("Load", _loads(analysis)),
+            *_first_answer(result),
+            *_message_chains(result),
+            section("Load", _loads(cores_of(analysis), "core")),
+            section("Utilisation of wires", _loads(wires_of(analysis), "wire")),
             *overload_sections(analysis),
             section("Response times", response_times(analysis)),
             section(NEEDS_HEADING, execution_times(analysis)),
@@ -74,7 +77,7 @@ def analysis_document(result: AnalysisResult) -> Document:
             *map(_executor, analysis.executors),
             *map(_host_executor, analysis.host),
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),
-            section(CHAINS_HEADING, _chains(analysis.chains)),
+            section(CHAINS_HEADING, _chains(analysis)),
             section("Requirements", _requirements(analysis)),
             *([] if result.impact is None else [impact_section(result.impact)]),
             *(
@@ -107,8 +110,19 @@ def proposal_document(proposal: Proposal) -> Document:
     return document([priorities_section(proposal)])
 
 
-def _message_chains(analysis: Analysis) -> Iterator[Section]:
-    """The latency of messages: a line for one chain, or a table of several."""
+def _first_answer(result: AnalysisResult) -> Iterator[Section]:
+    """What the verdict depends on, what most of it is, and what would help."""
+    if result.answer is not None:
+        first, *others = answer_lines(result.answer)
+        yield section(first, Sentences(others or [""]))
+
+
+def _message_chains(result: AnalysisResult) -> Iterator[Section]:
+    """The latency of messages: a line for one chain unless the answer is about it, or a table of several."""
+    analysis, answer = result.analysis, result.answer
+    answered = answer.chain if answer is not None and answer.explanation is not None else None
+    if list(analysis.message_chains) == [answered]:
+        return
     if len(analysis.message_chains) == 1:
         yield section(headline(analysis.message_chains[0]), Sentences([""]))
     elif analysis.message_chains:
@@ -120,7 +134,19 @@ def latencies_of_messages(analysis: Analysis, remark: str = "why") -> Table:
     return table("Latency of messages, end to end", (*MESSAGE_COLUMNS, remark), map(message_chain_row, analysis.message_chains))
 
 
-def _loads(analysis: Analysis) -> Table:
+def cores_of(analysis: Analysis) -> list[ProcessorResult]:
+    """The cores that execute something, without those that stand for wires."""
+    wires = {core for wire in analysis.solution.context.system.network.wires for core in wire.cores}
+    return [each for each in analysis.processors if each.worst != 0 and each.name not in wires]
+
+
+def wires_of(analysis: Analysis) -> list[ProcessorResult]:
+    """The wires in their directions, on which something is sent."""
+    cores = {each.name for each in cores_of(analysis)}
+    return [each for each in analysis.processors if each.worst != 0 and each.name not in cores]
+
+
+def _loads(processors: Sequence[ProcessorResult], kind: str) -> Table:
     rows = [
         (
             processor.name,
@@ -130,15 +156,15 @@ def _loads(analysis: Analysis) -> Table:
             _worst_load(processor),
             _bar(processor),
         )
-        for processor in analysis.processors
-        if processor.worst != 0
+        for processor in processors
     ]
-    return table("Load of each core", ("core", ">clock", ">best", ">mean", ">worst", ""), rows)
+    clock = "clock" if kind == "core" else "bit rate"
+    return table(f"Load of each {kind}", (kind, f"~>{clock}", "~~>best", "~~>mean", ">worst", "~~~"), rows)
 
 
 def _percent(load: Fraction | None, rounding: Rounding) -> str:
-    """A load in percent with three decimals; bounds are rounded so that they remain bounds."""
-    return UNKNOWN if load is None else f"{percent_text(load, 3, rounding)}%"
+    """A load in percent; bounds are rounded so that they remain bounds."""
+    return UNKNOWN if load is None else load_text(load, rounding)
 
 
 def _worst_load(processor: ProcessorResult) -> str:
@@ -169,7 +195,7 @@ def response_times(analysis: Analysis, is_detailed: bool = False) -> Table:
         (
             *_response_row(each, terms),
             verdict_badge(each) if each.verdict is not None or is_detailed else "-",
-            *_remarks(each, is_detailed),
+            *(_unlike(str(each.failure), brief(remark, analysis)) for remark in _remarks(each, is_detailed)),
         )
         for each in ordered
     ]
@@ -177,9 +203,9 @@ def response_times(analysis: Analysis, is_detailed: bool = False) -> Table:
     columns = (
         "process",
         "core",
-        ">priority",
-        ">WCET",
-        ">best",
+        "~>priority",
+        "~~~>WCET",
+        "~~>best",
         ">worst",
         *(f">{term}" for term in terms),
         ">deadline",
@@ -202,6 +228,11 @@ def _response_row(process: ProcessResult, terms: Sequence[str]) -> tuple[Cell, .
     )
 
 
+def _unlike(word: str, remark: str) -> str:
+    """A remark that says more than the word beside it."""
+    return "" if remark == word else remark
+
+
 def _remarks(process: ProcessResult, is_detailed: bool) -> tuple[str, ...]:
     response = process.response
     if not is_detailed:
@@ -218,7 +249,7 @@ def execution_times(analysis: Analysis) -> Table:
 
 def callbacks(results: Iterable[CallbackResult]) -> Table:
     """The response times of the callbacks of periodic executors."""
-    columns = ("callback", "process", ">best", ">mean", ">worst", ">deadline", "")
+    columns = ("callback", "~process", "~~>best", "~~~>mean", ">worst", ">deadline", "")
     title = "Callbacks, from the activation of the process to the end of the callback"
     return table(title, columns, map(_callback_row, results))
 
@@ -283,7 +314,7 @@ def _host_row(handle: HandleResult) -> tuple[Cell, ...]:
 def handles(executor: ExecutorResult, is_detailed: bool = False) -> Table:
     """The response times of the handles of an executor, and what can be lost; with how and why if it is detailed."""
     remarks = ("what can be lost, and how", "claim", "why") if is_detailed else ("can lose", "")
-    columns = ("handle", "kind", ">interval", ">best", ">worst", ">late by", *remarks)
+    columns = ("handle", "~~kind", ">interval", "~~~>best", ">worst", "~>late by", *remarks)
     return table(f"Executor {executor.name}", columns, (_handle_row(each, is_detailed) for each in executor.handles))
 
 
@@ -317,18 +348,20 @@ def _metric_row(name: JobMetric, metric: Metric) -> tuple[str, ...]:
     return (words(name), at_least(metric.min), _mean(metric.mean), at_most(metric.max), str(metric.claim))
 
 
-def _chains(chains: Sequence[ChainResult]) -> Table:
-    rows = [(chain.name, *latency_cells(chain, LATENCY_COLUMNS)) for chain in chains]
+def _chains(analysis: Analysis) -> Table:
+    rows = [
+        (chain.name, *(brief(cell, analysis) for cell in latency_cells(chain, LATENCY_COLUMNS))) for chain in analysis.chains
+    ]
     return table("Latencies of event chains", ("chain", *(f">{column}" for column in LATENCY_COLUMNS), ""), rows)
 
 
 def _requirements(analysis: Analysis) -> Table:
     ordered = sorted(analysis.requirements, key=lambda requirement: WORST_FIRST.index(requirement.verdict))
-    columns = ("requirement", "what", "limit", ">value", "verdict", ">margin", "")
-    return table("Requirements", columns, map(_requirement_row, ordered))
+    columns = ("requirement", "~what", "limit", ">value", "verdict", ">margin", "")
+    return table("Requirements", columns, (_requirement_row(each, analysis) for each in ordered))
 
 
-def _requirement_row(requirement: RequirementResult) -> tuple[Cell, ...]:
+def _requirement_row(requirement: RequirementResult, analysis: Analysis) -> tuple[Cell, ...]:
     is_certain = requirement.margin is not None and requirement.verdict is not Verdict.UNKNOWN
     return (
         requirement.name,
@@ -337,13 +370,19 @@ def _requirement_row(requirement: RequirementResult) -> tuple[Cell, ...]:
         _value(requirement),
         verdict_badge(requirement),
         at_least(requirement.margin) if is_certain else "",
-        requirement.reason,
+        "" if _shows_ends(requirement) else brief(requirement.reason, analysis),
     )
 
 
 def limit_text(limit: Time, is_upper: bool) -> str:
     """A limit, such as "at most 1 ms"."""
     return f"at {'most' if is_upper else 'least'} {time_text(limit)}"
+
+
+def _shows_ends(requirement: RequirementResult) -> bool:
+    """Whether the value of an unknown verdict is shown with both ends, which its reason only says again."""
+    ends = requirement.lower, requirement.upper
+    return requirement.verdict is Verdict.UNKNOWN and None not in ends and " is between " in requirement.reason
 
 
 def _value(requirement: RequirementResult) -> str:

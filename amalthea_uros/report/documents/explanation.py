@@ -5,19 +5,20 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results.chains import LatencyQuantity
+from amalthea_uros.analyze.results.chains import LIMITED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import OriginKind
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.report.basics.document import Block, Document, Lead, Sentences, Table, document, lines, section, table
 from amalthea_uros.report.documents.analysis import callbacks
-from amalthea_uros.report.wording.cells import UNKNOWN, exactly, share_text, words
-from amalthea_uros.report.wording.chains import cause_text, latency_cells, quantity_text, value_text
+from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, load_text, share_text, words
+from amalthea_uros.report.wording.chains import latency_cells, quantity_text, value_text
+from amalthea_uros.report.wording.largest_part import largest_cause, largest_term, latency_parts
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Time, percent_text, time_text
+from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.results.analysis import Judged
@@ -33,14 +34,13 @@ if TYPE_CHECKING:
     from amalthea_uros.executors.results import HandleResult
     from amalthea_uros.services.analyze import ChainDetail, Explanation
     from amalthea_uros.services.chains import PathsResult
-    from amalthea_uros.timing.response import Response
 
 #: More executions of the worst case are only counted.
 _MOST_EXECUTIONS = 20
 #: Of the shares in an execution time, the smaller ones are only added up.
 _MOST_SHARES = 20
 #: Further changes shorten a latency less, and further drawbacks of a change are only counted.
-_MOST_CHANGES, _MOST_DRAWBACKS = 5, 3
+_MOST_CHANGES, _MOST_DRAWBACKS = 8, 3
 
 
 def explanation_document(explanation: Explanation) -> Document:
@@ -68,10 +68,11 @@ def _process(explanation: ProcessExplanation) -> Iterator[Block]:
     elif response.worst is None:
         yield lines(Lead(name, f": response time unbounded: {response.reason}"))
     else:
-        yield lines(Lead(name, f": worst-case response time {time_text(response.worst)} ({response.claim})"))
-        yield Sentences([*_deadline(process), *_largest_term(explanation, response, response.worst)])
-        terms = [(term, time_text(value)) for term, value in response.terms.items() if value]
-        yield table("", ("made of", ">"), [*terms, ("sum", time_text(response.worst))])
+        yield lines(Lead(name, f": worst-case response time {at_most(response.worst, process.deadline)} ({response.claim})"))
+        largest = largest_term(explanation)
+        yield Sentences([*_deadline(process), *([f"largest part: {largest}"] if largest else [])])
+        terms = [(term, at_most(value)) for term, value in response.terms.items() if value]
+        yield table("", ("made of", ">"), [*terms, ("sum", at_most(response.worst, process.deadline))])
         yield interference(explanation)
         yield Sentences([response.method, f"{response.source}; {counted(response.jobs, 'job')} examined"])
     if explanation.origins:
@@ -97,24 +98,14 @@ def _deadline(process: ProcessResult) -> Iterator[str]:
 def _margin(judged: Judged, margin: Time) -> str:
     """How far a value is from its limit; of a bound beyond the limit it is unknown how far the value itself is."""
     if margin >= 0:
-        return f"{time_text(margin)} left"
-    distance = f"{time_text(-margin)} {'beyond' if judged.is_upper else 'short of'} the limit"
+        return f"{at_least(margin)} left"
+    distance = f"{at_most(-margin)} {'beyond' if judged.is_upper else 'short of'} the limit"
     return f"the bound is {distance}" if judged.verdict is Verdict.UNKNOWN else distance
-
-
-def _largest_term(explanation: ProcessExplanation, response: Response, worst: Time) -> Iterator[str]:
-    """What takes the largest part of a response time, if it has several parts."""
-    shares = {f"interference by {share.name}": share.time for share in explanation.shares}
-    terms = {term: time for term, time in response.terms.items() if time and not (term == "interference" and shares)}
-    parts = {**terms, **shares}
-    if len(parts) > 1:
-        name = max(parts, key=lambda part: parts[part])
-        yield f"largest part: {time_text(parts[name])} ({parts[name] / worst:.1%}), {name}"
 
 
 def interference(explanation: ProcessExplanation) -> Table:
     """The processes that delay one in its worst case."""
-    rows = [(share.name, f"{share.jobs:,}", time_text(share.time)) for share in explanation.shares]
+    rows = [(share.name, f"{share.jobs:,}", at_most(share.time)) for share in explanation.shares]
     caption = f"Interference in the worst case of {explanation.process.name}"
     return table(caption, ("interference by", ">jobs", ">time"), rows)
 
@@ -141,7 +132,7 @@ def _loads(explanation: ProcessExplanation) -> Table:
 
 
 def _percent(load: Fraction | None) -> str:
-    return "?" if load is None else f"{percent_text(load, 3)}%"
+    return "?" if load is None else load_text(load)
 
 
 def _execution(explanation: ProcessExplanation) -> Table:
@@ -151,8 +142,7 @@ def _execution(explanation: ProcessExplanation) -> Table:
     if explanation.in_worst_job and any(share.counter is not None for share in shares):
         is_worst = ["yes" if is_executed else "no" for is_executed in explanation.in_worst_job]
     rows = [
-        (*_calls(share), exactly(share.time, "?"), _part(share, wcet), worst)
-        for share, worst in zip(shares, is_worst, strict=True)
+        (*_calls(share), _worst(share.time), _part(share, wcet), worst) for share, worst in zip(shares, is_worst, strict=True)
     ]
     # Unknown shares count as the largest.
     order = sorted(range(len(rows)), key=lambda index: (shares[index].time is not None, -(shares[index].time or 0)))
@@ -160,9 +150,19 @@ def _execution(explanation: ProcessExplanation) -> Table:
     shown = [rows[index] for index in sorted(order[:_MOST_SHARES])]
     if others:
         rest = sum(shares[index].time or 0 for index in others)
-        shown.append((f"{len(others):,} others", "", "", time_text(rest), "", ""))
+        shown.append((f"{len(others):,} others", "", "", at_most(rest), "", ""))
     titles = ("WCET made of", ">calls", "in jobs", ">time", ">share", "in the worst job" if any(is_worst) else "")
-    return table("", titles, [*shown, ("sum", "", "", exactly(wcet, "?"), "", "")])
+    return table("", titles, [*shown, ("sum", "", "", _worst(wcet), "", "")])
+
+
+def _worst(time: Time | None) -> str:
+    """A maximum with four digits."""
+    return "?" if time is None else at_most(time)
+
+
+def _relative(time: Time | None) -> str:
+    """A point in time with four digits."""
+    return "-" if time is None else about(time)
 
 
 def _calls(share: ExecutionShare) -> tuple[str, str, str]:
@@ -179,7 +179,7 @@ def _part(share: ExecutionShare, wcet: Time | None) -> str:
 def _callback(explanation: CallbackExplanation) -> Iterator[Block]:
     """When a callback ends, and what the jobs of its process execute up to it."""
     callback, process = explanation.callback, explanation.process
-    worst = UNKNOWN if callback.response is None else exactly(callback.response.worst, "?")
+    worst = UNKNOWN if callback.response is None else _worst(callback.response.worst)
     claim = callback.reason or ("" if callback.response is None else str(callback.response.claim))
     yield lines(Lead(callback.name, f": worst-case response time {worst} ({claim}), in {process.name}"))
     if callback.deadline is not None and not explanation.handles:
@@ -192,7 +192,7 @@ def _callback(explanation: CallbackExplanation) -> Iterator[Block]:
         if handle.lost is not None:
             lost = f"{handle.lost.what} {'are' if handle.lost.is_certain else 'can be'} lost: {handle.lost.sequence}"
             yield Sentences([lost])
-    rows = [(*_calls(share), exactly(share.time, "?")) for share in explanation.execution]
+    rows = [(*_calls(share), _worst(share.time)) for share in explanation.execution]
     yield table("", ("executed up to its end", ">calls", "in jobs", ">time"), rows)
     if callback.response is not None:
         yield Sentences([callback.response.method, callback.response.source])
@@ -202,7 +202,7 @@ def terms_of(handle: HandleResult) -> Table:
     """What a handle of an executor that spins in a loop waits for, in the order of time."""
     worst = handle.response.worst
     rows = [
-        (term.name, exactly(term.most, "?"), f"{term.most / worst:.1%}" if worst and term.most is not None else "", term.why)
+        (term.name, _worst(term.most), f"{term.most / worst:.1%}" if worst and term.most is not None else "", term.why)
         for term in handle.terms
     ]
     return table(f"Worst response time of {handle.name}", ("in the worst case", ">time", ">share", ""), rows)
@@ -215,10 +215,11 @@ def _chain(explanation: ChainExplanation, found: Improvements | None) -> Iterato
         yield lines(Lead(explanation.chain.name, f": {quantity} unknown: {explanation.reason}"))
         yield Sentences(list(_limits(explanation)))
     else:
-        yield lines(Lead(explanation.chain.name, f": {quantity} {time_text(value.value)} ({value.claim})"))
-        yield Sentences([*_limits(explanation), *_largest_cause(explanation)])
+        yield lines(Lead(explanation.chain.name, f": {quantity} {at_most(value.value)} ({value.claim})"))
+        largest = largest_cause(explanation)
+        yield Sentences([*_limits(explanation), *([f"largest part: {largest}"] if largest else [])])
     if found is not None:
-        yield Sentences(list(_best_change(found)))
+        yield Sentences(list(_best_change(found, _tightest_limit(explanation))))
     if explanation.chain.crosses_messages:
         yield message_hops(explanation.chain)
         yield Sentences(list(_remarks_on_messages(explanation.chain)))
@@ -240,15 +241,21 @@ def _limits(explanation: ChainExplanation) -> Iterator[str]:
         yield f"{each.name}, {each.quantity}{limit}: {each.verdict}{rest}"
 
 
+def _tightest_limit(explanation: ChainExplanation) -> Time | None:
+    """Of the limits of this latency."""
+    limits = [each for each in explanation.requirements if LIMITED.get(each.quantity) is explanation.quantity and each.is_upper]
+    return min((each.limit for each in limits if each.limit is not None), default=None)
+
+
 def message_hops(chain: ChainResult) -> Table:
     """The hops of a chain over wires and executors with their parts; the columns best and worst add up to the latency."""
     rows: list[tuple[str, ...]] = []
     for hop in chain.hops:
         why = hop.reason or hop.source
-        rows.append((f"{hop.kind}: {hop.name}", time_text(hop.best), exactly(hop.worst, UNKNOWN), share_text(hop.share), why))
-        rows += [(f"- {part.name}", "", exactly(part.most, UNKNOWN), "", part.why) for part in hop.parts]
-    rows.append(("sum", time_text(chain.best or 0), exactly(chain.worst_if_not_lost, UNKNOWN), "", ""))
-    return table(f"Hops of {chain.name}", ("hop", ">best", ">worst", ">share", ""), rows)
+        rows.append((f"{hop.kind}: {hop.name}", at_least(hop.best), at_most(hop.worst), share_text(hop.share), why))
+        rows += [(f"- {part.name}", "", at_most(part.most), "", part.why) for part in hop.parts]
+    rows.append(("sum", at_least(chain.best or 0), at_most(chain.worst_if_not_lost), "", ""))
+    return table(f"Hops of {chain.name}", ("hop", "~>best", ">worst", ">share", ""), rows)
 
 
 def _remarks_on_messages(chain: ChainResult) -> Iterator[str]:
@@ -264,7 +271,7 @@ def _worst_case(explanation: ChainExplanation, value: LatencyValue, total: Time)
         yield Sentences([explanation.route])
     if explanation.hops:
         yield hops(explanation).compact
-        yield Sentences([f"waits and runs add up to {time_text(total)}; other times are relative to the first read"])
+        yield Sentences([f"waits and runs add up to {at_most(total)}; other times are relative to the first read"])
         if value.claim is Claim.BOUND:
             yield Sentences(["each read is as early and each write as late as possible, which need not occur in one run"])
         yield _causes(explanation)
@@ -280,7 +287,8 @@ def hops(explanation: ChainExplanation) -> Table:
         (
             hop.process,
             "-" if hop.job is None else f"{hop.job:,}",
-            *map(exactly, (hop.release, hop.start, hop.read, hop.write, hop.wait, hop.run)),
+            *map(_relative, (hop.release, hop.start, hop.read, hop.write)),
+            *map(at_most, (hop.wait, hop.run)),
             share_text(explanation.share(hop.wait + hop.run)),
         )
         for hop in explanation.hops
@@ -288,48 +296,18 @@ def hops(explanation: ChainExplanation) -> Table:
     waits, runs = (sum(hop.wait for hop in explanation.hops), sum(hop.run for hop in explanation.hops))
     empty = [""] * 5
     if last := explanation.overwritten:
-        rows.append(("until overwritten", *empty, time_text(last), "", share_text(explanation.share(last))))
-    rows.append(("sum", *empty, time_text(waits + last), time_text(runs), ""))
-    titles = ("process", ">job", ">release", ">start", ">read", ">write", ">wait", ">run", ">share")
+        rows.append(("until overwritten", *empty, at_most(last), "", share_text(explanation.share(last))))
+    rows.append(("sum", *empty, at_most(waits + last), at_most(runs), ""))
+    titles = ("process", ">job", "~~>release", "~~~>start", "~>read", "~>write", ">wait", ">run", ">share")
     return table(f"Hops of {explanation.chain.name}; times are relative to the first read", titles, rows)
-
-
-class _LatencyPart(NamedTuple):
-    """A wait or a run in a latency."""
-
-    process: str
-    kind: str
-    time: Time
-    reason: str
-
-
-def _parts(explanation: ChainExplanation) -> list[_LatencyPart]:
-    """All waits and runs with their causes, in their order."""
-    parts = [
-        _LatencyPart(hop.process, kind, cause.time, cause_text(cause, hop))
-        for hop in explanation.hops
-        for kind, causes in (("wait", hop.wait_causes), ("run", hop.run_causes))
-        for cause in causes
-    ]
-    if explanation.overwritten:
-        parts.append(_LatencyPart(explanation.hops[-1].process, "wait", explanation.overwritten, "until it writes again"))
-    return parts
-
-
-def _largest_cause(explanation: ChainExplanation) -> Iterator[str]:
-    """Which wait or run takes the largest part of a latency."""
-    if parts := _parts(explanation):
-        largest = max(parts, key=lambda part: part.time)
-        share = share_text(explanation.share(largest.time))
-        yield f"largest part: {time_text(largest.time)} ({share}), {largest.process}: {largest.reason}"
 
 
 def _causes(explanation: ChainExplanation) -> Table:
     """Why each wait and each run takes its time; a process is named once for all of its parts."""
     rows: list[tuple[str, ...]] = []
     before = ""
-    for process, kind, time, reason in _parts(explanation):
-        rows.append(("" if process == before else process, kind, time_text(time), share_text(explanation.share(time)), reason))
+    for process, kind, time, reason in latency_parts(explanation):
+        rows.append(("" if process == before else process, kind, at_most(time), share_text(explanation.share(time)), reason))
         before = process
     return table("", ("why so long", "", ">time", ">share", "reason"), rows)
 
@@ -341,8 +319,8 @@ def _executions(explanation: ChainExplanation) -> Iterator[Block]:
         (
             each.core,
             f"{each.process}#{each.job}",
-            time_text(each.begin),
-            time_text(each.end),
+            _relative(each.begin),
+            _relative(each.end),
             "of the chain" if (each.process, each.job) == (hop.process, hop.job) else f"before {hop.process}",
         )
         for hop, each in found[:_MOST_EXECUTIONS]
@@ -351,11 +329,11 @@ def _executions(explanation: ChainExplanation) -> Iterator[Block]:
     yield Sentences([f"... {len(found) - len(rows):,} more"] if len(found) > len(rows) else [])
 
 
-def _best_change(found: Improvements) -> Iterator[str]:
+def _best_change(found: Improvements, limit: Time | None) -> Iterator[str]:
     """The change with the greatest effect that breaks nothing, with the options that show all its effects."""
-    recommended = next((each for each in found.found if each.is_safe), None)
+    recommended = found.recommended(limit)
     if recommended is not None:
-        yield f"what helps: {recommended.change.text}, which gives {time_text(recommended.after)} ({recommended.claim})"
+        yield f"what helps: {recommended.change.text}, which gives {at_most(recommended.after)} ({recommended.claim})"
         yield f"to see all its effects: {shlex.join(recommended.change.options)}"
     elif found.found:
         yield "what helps: only changes that break something else; the last table shows them"
@@ -370,8 +348,8 @@ def changes(found: Improvements) -> Table:
         drawbacks = [f"{drawback.name}: {drawback.before} -> {drawback.after}" for drawback in each.drawbacks]
         more = [f"{len(drawbacks) - _MOST_DRAWBACKS:,} more"] if len(drawbacks) > _MOST_DRAWBACKS else []
         worse = "; ".join((*drawbacks[:_MOST_DRAWBACKS], *more))
-        rows.append((each.change.text, exactly(each.before, UNKNOWN), time_text(each.after), str(each.claim), worse))
-    return table("Changes that shorten it", ("what would shorten it", ">before", ">after", "claim", "what gets worse"), rows)
+        rows.append((each.change.text, at_most(each.before), at_most(each.after), str(each.claim), worse))
+    return table("Changes that shorten it", ("what would shorten it", "~>before", ">after", "~~claim", "what gets worse"), rows)
 
 
 def tried(found: Improvements) -> str:

@@ -8,7 +8,7 @@ from math import inf
 from typing import TypeAlias
 
 from amalthea_uros.analyze.results.analysis import Analysis, Judged
-from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
+from amalthea_uros.analyze.results.chains import LIMITED, ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import ProcessResult, RequirementResult
 from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.summary import urgency
@@ -22,8 +22,6 @@ from amalthea_uros.units import Rounding, Time, time_text
 #: Sorts the worst first.
 _Rank: TypeAlias = tuple[int, Fraction | float]
 _LAST: _Rank = (len(WORST_FIRST), inf)
-#: The quantities of chains that limits of these names limit.
-LIMITED = {"reaction": LatencyQuantity.MAX_REDUCED_REACTION_TIME, "data age": LatencyQuantity.MAX_REDUCED_DATA_AGE}
 #: With those whose jitter is limited.
 _CONCERNED = LIMITED | {jitter_name(name): quantity for name, quantity in LIMITED.items()}
 

@@ -14,6 +14,7 @@ from amalthea_uros.report.basics.document import (
     Tone,
 )
 from amalthea_uros.report.documents.judged import concerned, judged_items, why
+from amalthea_uros.report.wording.answer import answer_lines
 from amalthea_uros.report.wording.cells import tone_of, verdict_badge
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import ReportContent
@@ -26,7 +27,7 @@ _MOST_REASONS = 12
 _MOST_NAMES = 4
 
 
-_WORDS = {Tone.GOOD: "Schedulable", Tone.BAD: "Not schedulable", Tone.UNKNOWN: "Unknown whether schedulable"}
+_WORDS = {Tone.GOOD: "Schedulable", Tone.BAD: "Not schedulable", Tone.UNKNOWN: "Not proved schedulable"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +37,14 @@ class Opening:
     Attributes
     ----------
     word, line : in a few words, and the closing line of an analysis
+    answer : what the verdict depends on, what most of it is, and what would help
     reasons : what is missed or unknown, and why
     """
 
     tone: Tone
     word: str
     line: str
+    answer: Sequence[str]
     reasons: Sequence[tuple[str, str]]
     left_out: int
 
@@ -87,4 +90,7 @@ def opening(content: ReportContent) -> Opening:
     others = _together((item.name, ": ".join(filter(None, (verdict_badge(item).word, why(item))))) for item in rows)
     warnings = [(each.rule, each.message) for each in _unreported(content.warnings, rows)]
     reasons = list(dict.fromkeys((*overloads, *others, *warnings)))
-    return Opening(tone, _WORDS[tone], closing_line(summary), reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS))
+    answer = () if content.answer is None else tuple(answer_lines(content.answer))
+    return Opening(
+        tone, _WORDS[tone], closing_line(summary), answer, reasons[:_MOST_REASONS], max(0, len(reasons) - _MOST_REASONS)
+    )

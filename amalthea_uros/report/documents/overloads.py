@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from fractions import Fraction
 
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
 from amalthea_uros.report.basics.document import Cell, Section, Sentences, section, table
-from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, clock_text, load_text, priority_text
+from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, load_text, priority_text, relief
 from amalthea_uros.units import Rounding
 
 
@@ -37,8 +38,12 @@ def _remedy(core: ProcessorResult, load: Fraction) -> str:
     """By how much execution times have to be shorter, or the clock faster; what else there is to meet can need more."""
     if not core.is_overloaded:
         return f"The processes need up to {load_text(load, Rounding.UP)} of the core, unless modes exclude a part of it."
-    clock = "a faster clock" if core.frequency is None else f"a clock of at least {clock_text(core.frequency * load)}"
-    return (
-        f"The processes need at least {load_text(load, Rounding.DOWN)} of the core: it takes execution times of at most "
-        f"{load_text(1 / load, Rounding.UP)} of these, {clock}, or processes on another core."
-    )
+    return f"The processes need at least {load_text(load, Rounding.DOWN)} of the core: it takes {relief(core)}."
+
+
+_REPEATED = re.compile(r"overload: tasks at this priority or higher need [\d.,]+ % of the core\b")
+
+
+def brief(reason: str, analysis: Analysis) -> str:
+    """A reason without what the shares of an overloaded core show in more detail."""
+    return _REPEATED.sub("overload", reason) if any(core.is_overloaded for core in analysis.processors) else reason

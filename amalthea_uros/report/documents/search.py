@@ -18,7 +18,7 @@ from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.basics.document import Block, Document, Section, Sentences, document, section, table
 from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, load_text, words
 from amalthea_uros.report.wording.impact import impact_cells
-from amalthea_uros.units import Rounding, number_text, time_text
+from amalthea_uros.units import Rounding, number_text, rounded, time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.results.analysis import Analysis
@@ -306,4 +306,8 @@ def _computed(column: str, value: Value) -> str:
         return UNKNOWN
     if isinstance(value, str):
         return value
-    return at_most(Fraction(value)) if column.endswith("_ps") else number_text(Fraction(value).limit_denominator(10**6))
+    if column.endswith("_ps"):
+        return at_most(Fraction(value))
+    number = Fraction(value)
+    is_lower = any(word in column for word in ("best", "min", "margin"))
+    return number_text(number if number.denominator == 1 else rounded(number, Rounding.DOWN if is_lower else Rounding.UP, 1))

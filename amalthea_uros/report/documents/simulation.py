@@ -25,7 +25,7 @@ from amalthea_uros.report.basics.document import (
     table,
 )
 from amalthea_uros.report.documents.analysis import impact_section
-from amalthea_uros.report.wording.cells import badge, by_core_and_priority, deadline_text, observed, words
+from amalthea_uros.report.wording.cells import badge, by_core_and_priority, deadline_text, load_text, observed, words
 from amalthea_uros.report.wording.chains import CHAINS_HEADING
 from amalthea_uros.report.wording.closing_line import left_text
 from amalthea_uros.report.wording.findings import joined
@@ -39,7 +39,7 @@ from amalthea_uros.simulate.observations import (
 from amalthea_uros.simulate.results import IDLE, Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
-from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, percent_text, rounded_time_text, time_text
+from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, rounded_time_text, time_text
 
 _MINUTE = 60 * SECOND
 REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
@@ -141,8 +141,8 @@ def _run_text(simulation: Simulation) -> str:
 
 
 def _sections(simulation: Simulation, metrics: Iterable[Section] = (), changed: Iterable[Section] = ()) -> Iterator[Section]:
-    loads = [(core.name, _percent(core.load)) for core in simulation.cores if core.load]
-    yield section("Load", table("", ("core", ">load"), loads))
+    loads = [(core.name, load_text(core.load)) for core in simulation.cores if core.load]
+    yield section("Load", table("", ("core or wire", ">load"), loads))
     yield section("Observed response times", _processes(simulation))
     yield from metrics
     yield from map(_executor, simulation.executors)
@@ -156,10 +156,6 @@ def _sections(simulation: Simulation, metrics: Iterable[Section] = (), changed: 
     yield section("Assumptions", Sentences(simulation.assumptions))
 
 
-def _percent(load: Fraction) -> str:
-    return f"{percent_text(load, 3)}%"
-
-
 def _processes(simulation: Simulation) -> Table:
     ordered = sorted(simulation.processes, key=lambda each: by_core_and_priority(each.core, each.is_isr, each.priority))
     rows = [
@@ -167,7 +163,7 @@ def _processes(simulation: Simulation) -> Table:
             process.name,
             process.core or "-",
             f"{process.jobs:,}",
-            _percent(process.load),
+            load_text(process.load),
             *observed(process.response_time, process.deadline),
             deadline_text(process.deadline, process.is_implicit),
             f"{process.lost_activations:,}",
@@ -176,7 +172,7 @@ def _processes(simulation: Simulation) -> Table:
         )
         for process in ordered
     ]
-    numbers = (">jobs", ">load", ">min", ">mean", ">max", ">deadline", ">lost")
+    numbers = ("~~>jobs", "~~>load", "~~~>min", "~>mean", ">max", ">deadline", ">lost")
     return table("Observed response times", ("process", "core", *numbers, "verdict", ""), rows)
 
 
@@ -217,7 +213,9 @@ def _executor(executor: ExecutorObservation, is_of_host: bool = False) -> Sectio
         f"Executor {executor.name}{where} (from the arrival of a message, or when a timer is due, to the end of the callback)",
         Sentences([f"{counted(executor.iterations, jobs)}", *failed]),
         table(
-            "", ("callback" if is_of_host else "handle", "kind", ">calls", ">min", ">mean", ">max", ">late by", ">lost"), rows
+            "",
+            ("callback" if is_of_host else "handle", "~kind", "~~>calls", "~~~>min", "~~~>mean", ">max", ">late by", ">lost"),
+            rows,
         ),
     )
 
@@ -228,7 +226,7 @@ def _losses(simulation: Simulation) -> Table:
 
 
 def _chains(simulation: Simulation) -> Table:
-    columns = ("chain", ">observations", ">min", ">mean", ">reaction", ">data age", ">unanswered", "")
+    columns = ("chain", "~~>observations", "~~~>min", "~~~>mean", ">reaction", ">data age", "~>unanswered", "")
     return table("Latencies of event chains", columns, map(_chain, simulation.chains))
 
 
@@ -267,12 +265,12 @@ def _labels(simulation: Simulation) -> Table:
         )
         for label in simulation.labels
     ]
-    return table("", ("label", ">reads", ">writes", ">unwritten", ">overwritten", ">min age", ">mean", ">max"), rows)
+    return table("", ("label", "~~>reads", "~~>writes", "~>unwritten", "~>overwritten", ">min age", ">mean", ">max"), rows)
 
 
 def _requirements(simulation: Simulation) -> Table:
     ordered = sorted(simulation.requirements, key=lambda each: WORST_OBSERVED_FIRST.index(each.verdict))
-    columns = ("requirement", "what", "limit", ">observed", "verdict", ">margin", "")
+    columns = ("requirement", "~what", "limit", ">observed", "verdict", ">margin", "")
     return table("Requirements", columns, map(_requirement, ordered))
 
 

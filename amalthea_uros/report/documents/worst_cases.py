@@ -7,13 +7,12 @@ from functools import partial
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.explanations.chains import explain_chain
-from amalthea_uros.analyze.results.chains import LatencyQuantity
+from amalthea_uros.analyze.results.chains import LIMITED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ChainExplanation
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.basics.document import Block, Figure, Folded, Heading, Section, Sentences
 from amalthea_uros.report.documents.explanation import changes, hops, tried
 from amalthea_uros.report.documents.judged import (
-    LIMITED,
     concerned,
     decisive_quantity,
     judged_items,
@@ -27,6 +26,7 @@ from amalthea_uros.report.wording.cells import at_least, at_most, words
 from amalthea_uros.report.wording.chains import value_text
 from amalthea_uros.services.analyze import AnalysisResult
 from amalthea_uros.services.explain import improvements
+from amalthea_uros.services.first_answer import is_small
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import MetricObservation
@@ -86,16 +86,13 @@ def _limit(chain: str, quantity: LatencyQuantity, content: ReportContent) -> Tim
     return min((each.limit for each in limits if each.limit is not None), default=None)
 
 
-#: Each change is analysed: in larger systems that takes longer than the rest of the report.
-MOST_RUNNABLES, MOST_PROCESSES = 300, 100
-
-
 def _shortened(content: ReportContent, chain: str, quantity: LatencyQuantity) -> Block:
     """The single changes with the greatest effect, and what they make worse."""
-    software = content.system.software
-    if len(software.runnables) > MOST_RUNNABLES or len(content.system.processes) > MOST_PROCESSES:
+    result = _analyzed(content)
+    if not is_small(result):
         return Sentences([f"The system is large; amuros analyze --explain {chain} also tries what would shorten the latency."])
-    found = improvements(_analyzed(content), chain, quantity)
+    known = None if content.answer is None else content.answer.improvements
+    found = known if known and (known.chain, known.quantity) == (chain, quantity) else improvements(result, chain, quantity)
     if not found.found:
         return Sentences([f"No single change shortens it: {tried(found)}."])
     return Folded("What would shorten it", [changes(found), Sentences([f"{tried(found)}."])])

@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
-from amalthea_uros.analyze.results.processes import ProcessResult, RequirementResult
+from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
@@ -101,6 +101,16 @@ def clock_text(least: Frequency) -> str:
     """The clock that something needs at least, rounded up to four significant digits."""
     size = 10 ** max(0, len(str(int(least))) - 4)
     return frequency_text(rounded(least / size, Rounding.UP) * size)
+
+
+def relief(core: ProcessorResult, *, is_wire: bool = False) -> str:
+    """What an overloaded core or wire takes at least: shorter times, or a faster clock; to meet limits it can take more."""
+    load = core.at_least
+    if is_wire:
+        rate = "a higher bit rate" if core.frequency is None else f"at least {clock_text(core.frequency * load)} as bit rate"
+        return f"{rate}, or fewer or smaller messages"
+    clock = "a faster clock" if core.frequency is None else f"a clock of at least {clock_text(core.frequency * load)}"
+    return f"execution times of at most {load_text(1 / load, Rounding.UP)} of these, {clock}, or processes on another core"
 
 
 def share_text(share: Fraction | float | None) -> str:

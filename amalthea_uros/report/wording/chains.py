@@ -49,7 +49,7 @@ def quantity_text(quantity: LatencyQuantity) -> str:
 
 
 #: Of a table with a row for each chain; the last column has none.
-MESSAGE_COLUMNS = ("chain", "from", "to", ">best", ">worst")
+MESSAGE_COLUMNS = ("chain", "from", "to", "~>best", ">worst")
 #: Parts of a latency that its line names.
 _LARGEST = 2
 

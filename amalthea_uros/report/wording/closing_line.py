@@ -28,7 +28,7 @@ def closing_line(summary: SystemSummary) -> str:
             return f"Schedulable: yes{condition}{_tightest(summary)}"
         case Schedulable.NO:
             return "Schedulable: " + "; ".join(filter(None, (f"no: {_failures(summary)}", unknown)))
-    return f"Schedulable: {unknown}"
+    return f"Not proved schedulable: {unknown}"
 
 
 def _tightest(summary: SystemSummary) -> str:
@@ -98,11 +98,11 @@ def _ends_text(ends: Ends, is_upper: bool = True) -> str:
 def _unknown(summary: SystemSummary) -> str:
     """How much is unknown, and the most frequent cause."""
     if not summary.judged:
-        return "unknown: no deadline, requirement or constraint can be judged"
+        return "no deadline, requirement or constraint can be judged"
     unknown = summary.unexplained
     if not unknown:
         return ""
-    count = f"unknown: {len(unknown)} of {summary.judged}"
+    count = f"{len(unknown)} of {summary.judged} {'is' if len(unknown) == 1 else 'are'} unknown"
     causes = _causes(unknown)
     if not causes:
         return count

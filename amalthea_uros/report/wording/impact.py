@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import ComparedFigure, Effect, FigureUnit, Impact, ImpactRow, Preference
-from amalthea_uros.units import Rounding, number_text, percent_text, rounded_time_text
+from amalthea_uros.report.wording.cells import load_text
+from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text
 
 #: The names of quantities that tables have other words for.
 _SHORT = {
@@ -72,12 +73,15 @@ def _open_text(figure: ComparedFigure) -> str:
 def _number(figure: ComparedFigure, value: Fraction, other: int | Fraction | None) -> str:
     match figure.unit:
         case FigureUnit.SHARE:
-            return _percent(value, figure.goal)
+            return _percent(value, figure.goal, other)
         case FigureUnit.NUMBER:
             return number_text(value)
     return rounded_time_text(value, Rounding.UP if figure.goal is Preference.LOW else Rounding.DOWN, other)
 
 
-def _percent(load: Fraction, goal: Preference) -> str:
-    """A load in percent with three decimals, rounded to the safe side."""
-    return f"{percent_text(load, 3, Rounding.UP if goal is Preference.LOW else Rounding.DOWN)}%"
+def _percent(load: Fraction, goal: Preference, other: int | Fraction | None = None) -> str:
+    """A load in percent, rounded to the safe side, with as many digits as it takes to differ from the other one."""
+    rounding = Rounding.UP if goal is Preference.LOW else Rounding.DOWN
+    if other is None or other == load or (load > 1) != (other > 1):
+        return load_text(load, rounding)
+    return f"{number_text(rounded(load * 100, rounding, other * 100))} %"

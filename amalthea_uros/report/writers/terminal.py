@@ -4,84 +4,31 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
-from textwrap import wrap
 from typing import IO
 
+from amalthea_uros._internal.records import replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.report.basics.display import is_coloured
+from amalthea_uros.report.basics.display import is_coloured, is_standard
 from amalthea_uros.report.basics.escape import output_line, visible
-
-#: Columns between two cells, and before the first.
-GAP = 2
-
-#: What the columns of remarks are called.
-_REMARKS = ("", "reason", "how it is computed")
-
-#: Shorter remarks, such as claims, always stay in the table.
-_SHORT = 24
-
-#: Columns are not folded more narrowly than this.
-_NARROWEST = 12
-
-
-def column_widths(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> list[int]:
-    """The width of each column; cells may have several lines."""
-    columns = zip(headings, *cells, strict=True)
-    return [max(len(line) for cell in column for line in cell.split("\n")) for column in columns]
-
-
-def table_width(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> int:
-    """The width of a whole table."""
-    return sum(GAP + width for width in column_widths(headings, cells))
-
-
-def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> tuple[list[list[str]], list[str]]:
-    """The cells with numbers in the place of remarks that make a table wider than a page, and the footnotes with these numbers.
-
-    Equal remarks have one footnote.
-    """
-    notes: dict[str, int] = {}
-    others = [
-        GAP if name in _REMARKS else GAP + column for name, column in zip(headings, column_widths(headings, cells), strict=True)
-    ]
-    room = max(_SHORT, width - sum(others))
-
-    def shown(heading: str, cell: str) -> str:
-        if heading not in _REMARKS or len(cell) <= room:
-            return cell
-        return f"[{notes.setdefault(cell, len(notes) + 1)}]"
-
-    found = [[shown(heading, cell) for heading, cell in zip(headings, row, strict=True)] for row in cells]
-    return found, list(notes)
-
-
-def folded(headings: Sequence[str], cells: Sequence[Sequence[str]], fixed: Collection[int], width: int) -> list[list[str]]:
-    """The cells in several lines where a table would be wider than a page; as wide as needed if even that is not enough.
-
-    Parameters
-    ----------
-    fixed : columns that are not folded, since they have numbers
-    """
-    widths = column_widths(headings, cells)
-    excess = sum(GAP + column for column in widths) - width
-    for column in sorted(set(range(len(widths))) - set(fixed), key=lambda column: -widths[column]):
-        if excess <= 0:
-            break
-        narrower = max(widths[column] - excess, min(widths[column], _NARROWEST), len(headings[column]))
-        excess -= widths[column] - narrower
-        widths[column] = narrower
-    return [[_folded_cell(cell, limit) for cell, limit in zip(row, widths, strict=True)] for row in cells]
-
-
-def _folded_cell(cell: str, width: int) -> str:
-    return cell if len(cell) <= width else "\n".join(wrap(cell, width))
-
+from amalthea_uros.report.writers.table_layout import (
+    GAP,
+    Footnotes,
+    column_widths,
+    folded,
+    folded_headings,
+    glued,
+    left_out,
+    unglued,
+    with_footnotes,
+)
 
 #: Of so many findings of a kind in a row each is written; of more, the first ones.
 _WHOLE = 3
+#: Longer reasons are not repeated.
+_LONG_REASON = 40
 #: Of the others so many places.
 _PLACES = 8
 #: The parts that differ between messages of a kind: names in quotes, and numbers.
@@ -95,6 +42,13 @@ def kind_of_message(finding: Finding) -> tuple[str, Severity, str, str, Path | N
     return finding.rule, finding.severity, _VARIABLE.sub("", finding.message), _VARIABLE.sub("", finding.help), path
 
 
+def _without_reason_of(before: Finding, finding: Finding) -> Finding:
+    """A finding with a word in place of a long reason that the one before it has, too."""
+    what, _, reason = finding.message.partition(": ")
+    is_repeated = len(reason) > _LONG_REASON and before.message.partition(": ")[2] == reason
+    return replace(finding, message=f"{what}: for the same reason") if is_repeated else finding
+
+
 def _more(findings: Sequence[Finding]) -> str:
     """How many more findings of a kind there are, and where."""
     places = dict.fromkeys(finding.location.line for finding in findings if finding.location and finding.location.line)
@@ -104,7 +58,7 @@ def _more(findings: Sequence[Finding]) -> str:
 
 
 #: Longer source lines are shown in part; scheduler descriptions have a thousand characters.
-SNIPPET_WIDTH = 100
+SNIPPET_WIDTH, _NARROWEST_SNIPPET = 100, 20
 
 #: Wider tables have footnotes where the width of the page is not known.
 WIDTH_ELSEWHERE = 120
@@ -114,6 +68,7 @@ _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 
 #: Begins a style until the line is written: a lone surrogate, which no text of a file has.
 _STYLE = "\ud800["
+_STYLES = re.compile("\ud800\\[\\d+m")
 
 
 class Terminal:
@@ -123,10 +78,16 @@ class Terminal:
         self.stream = stream
         self.width = _width(stream)
         self.coloured = is_coloured(stream)
+        self.notes = Footnotes()
 
     def line(self, text: str = "") -> None:
-        """Write one line; of what is not ours in it, hidden characters are shown as escapes."""
+        """Write one line, or several where the terminal is not as wide; hidden characters in it are shown as escapes."""
         text = text.rstrip()
+        for part in [text] if self.width is None else wrapped(text, self.width):
+            self._write(part)
+
+    def _write(self, text: str) -> None:
+        """Write one line as it is."""
         # Colours may be wanted in the log of a CI system, too, and a line may begin with text that has none.
         self.stream.write(("\x1b[".join(map(output_line, text.split(_STYLE))) if self.coloured else output_line(text)) + "\n")
 
@@ -147,8 +108,8 @@ class Terminal:
         for _, run in groupby(findings, kind_of_message):
             alike = list(run)
             shown = _WHOLE if len(alike) > _WHOLE + 1 else len(alike)
-            for finding in alike[:shown]:
-                self.finding(finding)
+            for before, finding in zip([None, *alike], alike[:shown], strict=False):
+                self.finding(finding if before is None else _without_reason_of(before, finding))
             if others := alike[shown:]:
                 self.line(f"  {self.style(_more(others), '2')}")
 
@@ -166,30 +127,45 @@ class Terminal:
         """Write the source line of a place and a caret below."""
         if location.text is None or location.line is None or location.column is None:
             return
-        text, column = _excerpt(location.text, location.column - 1)
         number = str(location.line)
+        room = (
+            SNIPPET_WIDTH if self.width is None else max(_NARROWEST_SNIPPET, min(SNIPPET_WIDTH, self.width - len(number) - 11))
+        )
+        text, column = _excerpt(location.text, location.column - 1, room)
         tabless = text.replace("\t", " ")
         column = len(visible(tabless[:column]))
-        self.line(f"  {self.style(f'{number} |', '34')} {tabless}")
-        self.line(f"  {self.style(' ' * len(number) + ' |', '34')} {' ' * column}{self.style('^', '31')}")
+        self._write(f"  {self.style(f'{number} |', '34')} {tabless}")
+        self._write(f"  {self.style(' ' * len(number) + ' |', '34')} {' ' * column}{self.style('^', '31')}")
 
-    def table(self, headings: Sequence[str], rows: Iterable[Sequence[object]], right: Sequence[int] = ()) -> None:
+    def table(
+        self,
+        headings: Sequence[str],
+        rows: Iterable[Sequence[object]],
+        right: Sequence[int] = (),
+        spare: Sequence[int] = (),
+    ) -> None:
         """Write rows in columns that are as wide as needed.
 
-        Where a table is wider than the terminal, or than 120 characters elsewhere, long remarks become footnotes. Columns of text
-        that are still too wide for a terminal are folded; elsewhere they are not, so that programs find names in one piece.
+        Where a table is wider than the terminal, or than 120 characters elsewhere, long remarks become footnotes; one that many rows
+        have does so everywhere. Columns of text that are still too wide for a terminal are folded, and spare ones left out; elsewhere
+        they are not, so that programs find names in one piece.
 
         Parameters
         ----------
         right : columns that are aligned to the right
+        spare : columns that are left out where there is no room for them
         """
         cells = [[visible(str(cell)) for cell in row] for row in rows]
-        notes: list[str] = []
-        width = self.width or WIDTH_ELSEWHERE
-        if table_width(headings, cells) > width:
-            cells, notes = with_footnotes(headings, cells, width)
+        before, missing = len(self.notes), list[str]()
+        cells = with_footnotes(headings, cells, self.width or WIDTH_ELSEWHERE, self.notes)
         if self.width is not None:
-            cells = folded(headings, cells, right, self.width)
+            headings = folded_headings(headings, cells, self.width)
+            without = left_out(headings, cells, spare, right, self.width)
+            kept = [index for index in range(len(headings)) if index not in without]
+            missing = [headings[index].replace("\n", " ") for index in sorted(without) if headings[index]]
+            headings = [headings[index] for index in kept]
+            right = [number for number, index in enumerate(kept) if index in right]
+            cells = folded(headings, [[row[index] for index in kept] for row in cells], right, self.width)
         widths = column_widths(headings, cells)
         for is_heading, row in [(True, list(headings)), *((False, row) for row in cells)]:
             for line in zip_longest(*(cell.split("\n") for cell in row), fillvalue=""):
@@ -198,32 +174,53 @@ class Terminal:
                     for i, (cell, width) in enumerate(zip(line, widths, strict=True))
                 ]
                 text = (" " * GAP).join(padded).rstrip()
-                self.line(" " * GAP + (self.style(text, "2") if is_heading else text))
-        for number, note in enumerate(notes, start=1):
-            self.line(f"{' ' * GAP}[{number}] {note}")
+                self._write((" " * GAP + (self.style(text, "2") if is_heading else text)).rstrip())
+        if missing:
+            self.line(f"{' ' * GAP}(no room for: {', '.join(missing)})")
+        for note in self.notes.from_number(before + 1):
+            self.line(" " * GAP + note)
 
 
 def _width(stream: IO[str]) -> int | None:
-    """The columns of a terminal, which the user can state in `COLUMNS`; None elsewhere.
+    """The columns of a terminal, which the user can state in `COLUMNS`; of pipes and files only if that is stated.
 
-    For pipes and files, `COLUMNS` says nothing: Python's `readline` states it for all processes that a program starts.
+    Python's `readline` states it for all processes that a program starts, though, together with `LINES`: this says nothing of pipes.
     """
+    stated = os.environ.get("COLUMNS", "")
+    if stated.isascii() and stated.isdecimal() and int(stated) > 0 and (stream.isatty() or _is_for_pipes(stream)):
+        return int(stated)
     if not stream.isatty():
         return None
-    stated = os.environ.get("COLUMNS", "")
-    if stated.isascii() and stated.isdecimal() and int(stated) > 0:
-        return int(stated)
     try:
         return os.get_terminal_size(stream.fileno()).columns or None
     except (OSError, ValueError):  # a terminal that does not know its size
         return None
 
 
-def _excerpt(text: str, column: int) -> tuple[str, int]:
+def _is_for_pipes(stream: IO[str]) -> bool:
+    """Whether `COLUMNS` is meant for what is no terminal: a standard stream, and no number of lines beside it."""
+    return is_standard(stream) and "LINES" not in os.environ
+
+
+def wrapped(text: str, width: int) -> list[str]:
+    """A text in lines; those after the first are indented more, and names stay whole."""
+    indent = len(text) - len(text.lstrip())
+    found, length = [" " * indent], indent - 1
+    for word in map(unglued, glued(text).split()):
+        size = len(_STYLES.sub("", word))
+        if length + 1 + size > width and found[-1].strip():
+            found.append(" " * (indent + GAP))
+            length = indent + GAP - 1
+        found[-1] += f" {word}" if found[-1].strip() else word
+        length += 1 + size
+    return found
+
+
+def _excerpt(text: str, column: int, room: int) -> tuple[str, int]:
     """The part of a line around a column that fits, and the column in it."""
-    if len(text) <= SNIPPET_WIDTH:
+    if len(text) <= room:
         return text, column
-    start = max(0, min(column - SNIPPET_WIDTH // 3, len(text) - SNIPPET_WIDTH))
-    end = start + SNIPPET_WIDTH
+    start = max(0, min(column - room // 3, len(text) - room))
+    end = start + room
     before, after = ("..." if start else ""), ("..." if end < len(text) else "")
     return f"{before}{text[start:end]}{after}", column - start + len(before)

@@ -53,7 +53,7 @@ def _write_others(blocks: Iterable[Block], terminal: Terminal) -> None:
     for block in blocks:
         match block:
             case Table():
-                terminal.table([column.title for column in block.columns], block.rows, right=block.right)
+                terminal.table([column.title for column in block.columns], block.rows, block.right, block.spare)
             case Sentences():
                 for sentence in block.sentences:
                     terminal.line(" " * block.indent + _styled(sentence, terminal))
