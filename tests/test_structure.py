@@ -21,7 +21,7 @@ LINES = {
     "_internal": 927,
     "_version": 1,
     "am": 2,
-    "analyze": 8658,
+    "analyze": 8660,
     "bridge": 2867,
     "cli": 2420,
     "compare": 3859,

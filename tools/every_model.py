@@ -79,7 +79,7 @@ def run(command: str, path: Path, limit: int) -> Outcome:
             _become([command, *words], folder, limit)
         _, status, used = os.wait4(child, 0)
         cause = folder / "cause"
-        said = (folder / "err").read_text(errors="replace").splitlines()
+        said = _lines(folder / "err")
         return Outcome(
             file=str(path),
             command=command,
@@ -88,8 +88,13 @@ def run(command: str, path: Path, limit: int) -> Outcome:
             megabytes=used.ru_maxrss // 1024,
             lines=len(said),
             cause=cause.read_text() if cause.exists() else "",
-            closing=_last((folder / "out").read_text(errors="replace").splitlines() or said),
+            closing=_last(_lines(folder / "out") or said),
         )
+
+
+def _lines(path: Path) -> list[str]:
+    """The lines of a file; none if the command ended before it had one."""
+    return path.read_text(errors="replace").splitlines() if path.exists() else []
 
 
 def _last(lines: list[str]) -> str:

@@ -11,7 +11,8 @@ from amalthea_uros.bridge.extract import extract
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.design.missing_values import missing_values
-from amalthea_uros.perf.distributions import Boundaries, Constant, Uniform
+from amalthea_uros.perf.activities import Demand, Execute
+from amalthea_uros.perf.distributions import Boundaries, Constant, Gauss, Uniform
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
@@ -115,3 +116,15 @@ def test_a_least_distance_keeps_the_greatest_one_if_that_is_not_less(before, aft
     assert changed.distance == after
     # Nobody said that what is farther apart than before does not come.
     assert changed.has_maximum == (after.upper == before.upper if isinstance(after, Boundaries) else False)
+
+
+def test_a_distribution_without_a_least_value_is_replaced_too():
+    # Its greatest value alone bounds nothing: the least one decides what else can execute meanwhile.
+    unbounded = replace(task("B", "tick"), activities=(Execute(demand=Demand(Gauss(mean=5.0, deviation=1.0, upper=10))),))
+    system = of_parts(
+        [task("A", "tick"), unbounded],
+        [TaskAllocation(task="A", scheduler="core", priority=1), TaskAllocation(task="B", scheduler="core", priority=2)],
+        [Periodic(name="tick", period=10 * MS)],
+        policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
+    )
+    assert proposed(system) == ({"B.execution_time"}, ("A", "B"))

@@ -90,6 +90,8 @@ def explored(streams: Sequence[JobStream], max_steps: int = MAX_STEPS) -> Sequen
     found = [JobEnds() for _ in streams]
     hyperperiod = lcm(*(stream.period * stream.cycle for stream in streams))
     in_hyperperiod = sum(hyperperiod // stream.period for stream in streams)
+    if in_hyperperiod * len(streams) > max_steps:
+        return None
     states: _States = {(0,) * len(streams): [(0, 0, None)]}
     ends_of_hyperperiods: list[_States] = []
     steps = 0
