@@ -44,7 +44,7 @@ LINES = {
     "services": 2402,
     "simulate": 8570,
     "source": 2715,
-    "spec": 2498,
+    "spec": 2859,
     "timing": 5524,
     "trace": 5057,
     "units": 200,
@@ -97,12 +97,14 @@ EXCEPTIONS = {
     "InvalidArgumentError",
     "Missing",
     "ReadError",
+    "SectionError",
     "UnknownError",
     "UnlinkedError",
     "UnraisedError",
     "UnreadableError",
     "UnwritableError",
     "WriteError",
+    "WrongValueError",
     "_WrongError",
 }
 

@@ -56,7 +56,9 @@ _OTHER_KEYS = f"^({EXTENSION}|<<$)"
 
 def json_schema() -> dict[str, Any]:
     """The schema, draft-07, with the messages and snippets of yaml-language-server."""
-    schema = Description.model_json_schema("#/definitions/{name}")
+    from amalthea_uros.spec.section_schemas import whole_schema
+
+    schema = whole_schema(Description, "#/definitions/{name}")
     definitions: dict[str, Any] = schema.pop("$defs")
     whole: dict[str, Any] = {"$schema": _DRAFT, "$id": _ID, "title": "amuros application"} | _tidied(schema)
     named = {_name(name): _tidied(definition) for name, definition in definitions.items()}

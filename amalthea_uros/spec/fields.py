@@ -1,4 +1,4 @@
-"""What the keys of sections are: marks of their types, and their defaults.
+"""Keys of sections: marks of their types, and their defaults.
 
 Sections are checked by functions of this package. A library for that takes longer to import, and to build a class per section, than
 everything else that a short command does.
@@ -70,8 +70,8 @@ class WrittenAs:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
-    """What a section says of a key beside its type.
+class KeyEntry:
+    """An entry of a section: a key, beside its type.
 
     Attributes
     ----------
@@ -93,9 +93,9 @@ def entry(
     examples: Sequence[str] = (),
     min_length: int | None = None,
 ) -> Any:
-    """What a section says of a key beside its type, in the place of its default."""
+    """An entry of a section: a key, beside its type, in the place of its default."""
     lengths = (Limits(min_length=min_length),) if min_length is not None else ()
-    return Entry(default, default_factory, alias, (*lengths, *((Examples(examples),) if examples else ())))
+    return KeyEntry(default, default_factory, alias, (*lengths, *((Examples(examples),) if examples else ())))
 
 
 F = TypeVar("F", bound=Callable[..., Any])

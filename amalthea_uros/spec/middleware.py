@@ -187,7 +187,9 @@ class PoolSizes(DescriptionSection):
 
 def option_units() -> dict[str, str]:
     """The unit of each build option: "B", "ms" or "number"; "switch" for a truth value, "word" for a choice."""
-    properties = PoolSizes.model_json_schema()["properties"]
+    from amalthea_uros.spec.section_schemas import whole_schema
+
+    properties = whole_schema(PoolSizes)["properties"]
     return {key: _unit(properties[key]["anyOf"][0]) for key in PoolSizes.model_fields}
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
 
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.spec.fields import EXAMINES, REQUIRED, Entry, entry
+from amalthea_uros.spec.fields import EXAMINES, REQUIRED, KeyEntry, entry
 from amalthea_uros.spec.nodes import MappingNode, Node, SequenceNode, YamlText
 from amalthea_uros.spec.type_checks import WRONG, Check, Errors, Path, SectionError, WrongValueError, check_of, wrong
 
@@ -33,7 +33,7 @@ class SectionField:
     __slots__ = ("_check", "_module", "_text", "alias", "default", "default_factory", "metadata", "name")
 
     def __init__(self, name: str, text: str, module: str, stated: Any) -> None:
-        said = stated if isinstance(stated, Entry) else Entry(stated, None, None, ())
+        said = stated if isinstance(stated, KeyEntry) else KeyEntry(stated, None, None, ())
         self.name, self.alias, self.metadata = name, said.alias, said.marks
         self.default, self.default_factory = said.default, said.default_factory
         self._text, self._module = text, module
@@ -70,7 +70,7 @@ class SectionField:
 
 
 class SectionKind(type):
-    """The class of a kind of sections, whose keys are found when somebody asks for them."""
+    """The class of a kind of sections, whose keys are read when somebody asks for them."""
 
     _fields: dict[str, SectionField]
 
@@ -78,13 +78,13 @@ class SectionKind(type):
     def model_fields(cls) -> dict[str, SectionField]:
         """The keys by the names of the attributes: those of its bases first, in their places also where it has them anew."""
         if "_fields" not in vars(cls):
-            found: dict[str, SectionField] = {}
+            fields: dict[str, SectionField] = {}
             for base in reversed(cls.__mro__):
                 annotations = vars(base).get("__annotations__", {}) if isinstance(base, SectionKind) else {}
                 for name, text in annotations.items():
                     if not name.startswith("_") and not text.startswith("ClassVar"):
-                        found[name] = SectionField(name, text, base.__module__, vars(base).get(name, REQUIRED))
-            cls._fields = found
+                        fields[name] = SectionField(name, text, base.__module__, vars(base).get(name, REQUIRED))
+            cls._fields = fields
         return cls._fields
 
 
@@ -100,10 +100,10 @@ class DescriptionSection(metaclass=SectionKind):
 
     def __init__(self, **values: Any) -> None:
         errors: Errors = []
-        found = type(self).checked(values, (), errors)
-        if found is WRONG:
+        section = type(self).checked(values, (), errors)
+        if section is WRONG:
             raise SectionError(type(self).__name__, errors)
-        self.__dict__.update(found.__dict__)
+        self.__dict__.update(section.__dict__)
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):
@@ -139,10 +139,10 @@ class DescriptionSection(metaclass=SectionKind):
         SectionError : something in it is wrong; carries all errors.
         """
         errors: Errors = []
-        found = cls.checked(value, (), errors)
-        if found is WRONG:
+        section = cls.checked(value, (), errors)
+        if section is WRONG:
             raise SectionError(cls.__name__, errors)
-        return found  # type: ignore[no-any-return]
+        return section  # type: ignore[no-any-return]
 
     @classmethod
     def model_construct(cls, **values: Any) -> Self:
@@ -152,18 +152,11 @@ class DescriptionSection(metaclass=SectionKind):
 
     def model_copy(self, update: Mapping[str, Any] | None = None) -> Self:
         """The section with some other values, which are not checked."""
-        found = type(self)._made(self.__dict__, self.model_fields_set)
+        section = type(self)._made(self.__dict__, self.model_fields_set)
         if update:
-            found.__dict__.update(update)
-            found._stated = self.model_fields_set | update.keys()
-        return found
-
-    @classmethod
-    def model_json_schema(cls, reference: str = "#/$defs/{name}") -> dict[str, Any]:
-        """The JSON schema of the section, with those of the sections in it as definitions."""
-        from amalthea_uros.spec.section_schemas import whole_schema
-
-        return whole_schema(cls, reference)
+            section.__dict__.update(update)
+            section._stated = self.model_fields_set | update.keys()
+        return section
 
     @classmethod
     def checked(cls, value: Any, loc: Path, errors: Errors) -> Any:
@@ -211,10 +204,10 @@ class DescriptionSection(metaclass=SectionKind):
 
     @classmethod
     def _made(cls, values: Mapping[str, Any], stated: frozenset[str]) -> Self:
-        found = object.__new__(cls)
-        found.__dict__.update(values)
-        found._stated = stated
-        return found
+        section = object.__new__(cls)
+        section.__dict__.update(values)
+        section._stated = stated
+        return section
 
     @classmethod
     def _examinations(cls) -> list[Callable[[Any], Any]]:

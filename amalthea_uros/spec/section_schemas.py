@@ -19,29 +19,29 @@ _NOTHING: Mapping[str, Any] = {"type": "null"}
 _TYPES = {int: "integer", float: "number", str: "string", bool: "boolean"}
 
 
-def whole_schema(kind: type[DescriptionSection], reference: str) -> Schema:
+def whole_schema(kind: type[DescriptionSection], reference: str = "#/$defs/{name}") -> Schema:
     """The schema of a section.
 
     Parameters
     ----------
     reference : how one refers to the definition of a section, with `{name}`
     """
-    definitions = _Definitions(reference)
+    definitions = _SectionSchemas(reference)
     whole = definitions.section(kind)
-    return whole | {"$defs": dict(sorted(definitions.found.items()))}
+    return whole | {"$defs": dict(sorted(definitions.result.items()))}
 
 
-class _Definitions:
+class _SectionSchemas:
     """The schemas of the sections in a section.
 
     Attributes
     ----------
-    found : by the names of their classes
+    result : by the names of their classes
     """
 
     def __init__(self, reference: str) -> None:
         self._reference = reference
-        self.found: dict[str, Schema] = {}
+        self.result: dict[str, Schema] = {}
 
     def section(self, kind: type[DescriptionSection]) -> Schema:
         """The schema of a section itself."""
@@ -55,13 +55,13 @@ class _Definitions:
                 schema.setdefault("description", texts[field.key])
             properties[field.key] = schema
         required = [field.key for field in kind.model_fields.values() if field.is_required]
-        found: Schema = {"additionalProperties": False, "description": inspect.getdoc(kind), "properties": properties}
-        found |= {"required": required} if required else {}
-        found["type"] = "object"
+        result: Schema = {"additionalProperties": False, "description": inspect.getdoc(kind), "properties": properties}
+        result |= {"required": required} if required else {}
+        result["type"] = "object"
         if not issubclass(kind, Shorthand):
-            return found
+            return result
         plain = properties[kind.shorthand[0]] | {"description": kind.plain_value}
-        return {"anyOf": [plain, found], "description": found["description"]}
+        return {"anyOf": [plain, result], "description": result["description"]}
 
     def _typed(self, annotation: Any, marks: Sequence[Any] = ()) -> Schema:
         """The schema of a type with further marks."""
@@ -89,10 +89,10 @@ class _Definitions:
 
     def _referred(self, kind: type[DescriptionSection]) -> Schema:
         name = kind.__name__
-        if name not in self.found:
+        if name not in self.result:
             # Before its own schema, which may refer to it.
-            self.found[name] = {}
-            self.found[name] = self.section(kind)
+            self.result[name] = {}
+            self.result[name] = self.section(kind)
         return {"$ref": self._reference.format(name=name)}
 
     def _marked(self, schema: Schema, mark: Any) -> Schema:

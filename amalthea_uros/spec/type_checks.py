@@ -105,10 +105,10 @@ def _marked(check: Check, mark: Any) -> Check:
 
 def _converted(convert: Callable[[Any], Any], check: Check, value: Any, loc: Path, errors: Errors) -> Any:
     try:
-        found = convert(value)
+        result = convert(value)
     except WrongValueError as problem:
         return wrong(errors, problem.kind, loc, value, str(problem))
-    return check(found, loc, errors)
+    return check(result, loc, errors)
 
 
 def _converted_after(examine: Callable[[Any], Any], value: Any, loc: Path, errors: Errors) -> Any:
@@ -120,22 +120,22 @@ def _converted_after(examine: Callable[[Any], Any], value: Any, loc: Path, error
         return wrong(errors, problem.kind, loc, value, str(problem))
 
 
-def _limited(limits: Limits, found: Any, value: Any, loc: Path, errors: Errors) -> Any:
-    if found is WRONG:
+def _limited(limits: Limits, result: Any, value: Any, loc: Path, errors: Errors) -> Any:
+    if result is WRONG:
         return WRONG
-    if limits.min_length is not None and len(found) < limits.min_length:
-        return wrong(errors, "too_short", loc, value, "too short", min_length=limits.min_length, actual_length=len(found))
-    if limits.max_length is not None and len(found) > limits.max_length:
-        return wrong(errors, "too_long", loc, value, "too long", max_length=limits.max_length, actual_length=len(found))
-    if limits.le is not None and found > limits.le:
+    if limits.min_length is not None and len(result) < limits.min_length:
+        return wrong(errors, "too_short", loc, value, "too short", min_length=limits.min_length, actual_length=len(result))
+    if limits.max_length is not None and len(result) > limits.max_length:
+        return wrong(errors, "too_long", loc, value, "too long", max_length=limits.max_length, actual_length=len(result))
+    if limits.le is not None and result > limits.le:
         return wrong(errors, "less_than_equal", loc, value, "too large", le=limits.le)
-    if limits.lt is not None and found >= limits.lt:
+    if limits.lt is not None and result >= limits.lt:
         return wrong(errors, "less_than", loc, value, "too large", lt=limits.lt)
-    if limits.ge is not None and found < limits.ge:
+    if limits.ge is not None and result < limits.ge:
         return wrong(errors, "greater_than_equal", loc, value, "too small", ge=limits.ge)
-    if limits.gt is not None and found <= limits.gt:
+    if limits.gt is not None and result <= limits.gt:
         return wrong(errors, "greater_than", loc, value, "too small", gt=limits.gt)
-    return found
+    return result
 
 
 def _choice(words: tuple[Any, ...]) -> Check:
@@ -143,10 +143,10 @@ def _choice(words: tuple[Any, ...]) -> Check:
     expected = f"{', '.join(others)} or {last}" if others else last
 
     def check(value: Any, loc: Path, errors: Errors) -> Any:
-        found = next((word for word in words if type(word) is type(value) and word == value), WRONG)
-        if found is WRONG:
+        result = next((word for word in words if type(word) is type(value) and word == value), WRONG)
+        if result is WRONG:
             wrong(errors, "literal_error", loc, value, f"expected {expected}", expected=expected)
-        return found
+        return result
 
     return check
 
@@ -155,8 +155,8 @@ def _list(item: Check) -> Check:
     def check(value: Any, loc: Path, errors: Errors) -> Any:
         if not isinstance(value, list | tuple):
             return wrong(errors, "list_type", loc, value, "expected a list")
-        found = [item(each, (*loc, index), errors) for index, each in enumerate(value)]
-        return WRONG if any(each is WRONG for each in found) else found
+        result = [item(each, (*loc, index), errors) for index, each in enumerate(value)]
+        return WRONG if any(each is WRONG for each in result) else result
 
     return check
 
@@ -201,8 +201,8 @@ _TRUTH = {"1": True, "on": True, "t": True, "true": True, "y": True, "yes": True
 def _truth(value: Any, loc: Path, errors: Errors) -> Any:
     if isinstance(value, bool):
         return value
-    found = _TRUTH.get(str(value).lower(), WRONG) if isinstance(value, str | int) else WRONG
-    return wrong(errors, "bool_type", loc, value, "expected true or false") if found is WRONG else found
+    result = _TRUTH.get(str(value).lower(), WRONG) if isinstance(value, str | int) else WRONG
+    return wrong(errors, "bool_type", loc, value, "expected true or false") if result is WRONG else result
 
 
 def _instance(kind: Any) -> Check:
