@@ -30,12 +30,11 @@ _NARROWEST = 12
 def column_widths(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> list[int]:
     """The width of each column; cells may have several lines."""
     columns = zip(headings, *cells, strict=True)
-    return [max(len(line) for cell in column for line in cell.split("\n")) for column in columns]
+    return [max(map(_cell_width, column)) for column in columns]
 
 
-def table_width(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> int:
-    """The width of a whole table."""
-    return sum(GAP + width for width in column_widths(headings, cells))
+def _cell_width(cell: str) -> int:
+    return max(map(len, cell.split("\n"))) if "\n" in cell else len(cell)
 
 
 def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> tuple[list[list[str]], list[str]]:
@@ -186,13 +185,14 @@ class Terminal:
         cells = [[visible(str(cell)) for cell in row] for row in rows]
         notes: list[str] = []
         width = self.width or WIDTH_ELSEWHERE
-        if table_width(headings, cells) > width:
-            cells, notes = with_footnotes(headings, cells, width)
-        if self.width is not None:
-            cells = folded(headings, cells, right, self.width)
         widths = column_widths(headings, cells)
+        if sum(GAP + each for each in widths) > width:
+            cells, notes = with_footnotes(headings, cells, width)
+            if self.width is not None:
+                cells = folded(headings, cells, right, self.width)
+            widths = column_widths(headings, cells)
         for is_heading, row in [(True, list(headings)), *((False, row) for row in cells)]:
-            for line in zip_longest(*(cell.split("\n") for cell in row), fillvalue=""):
+            for line in zip_longest(*(cell.split("\n") for cell in row), fillvalue="") if self.width is not None else [row]:
                 padded = [
                     cell.rjust(width) if i in right else cell.ljust(width)
                     for i, (cell, width) in enumerate(zip(line, widths, strict=True))
