@@ -1,6 +1,6 @@
 """Base of all sections of an `app.yaml`: their keys are known, and they know their locations.
 
-Nothing is made of a class until a section of it is; what reads a file needs a third of them.
+Nothing is made of a class until a section of it is; what reads a file needs a third of them. Annotations are text in their modules.
 """
 
 from __future__ import annotations
