@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from decimal import MAX_EMAX, ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from enum import StrEnum
 from fractions import Fraction
+from functools import lru_cache
 from math import ceil, floor
 from typing import Generic, NamedTuple, Self, TypeAlias, TypeVar
 
@@ -247,6 +248,10 @@ class Rounding(StrEnum):
     NEAREST = ROUND_HALF_EVEN
 
 
+#: Whole numbers from here on are shortened to twelve digits.
+_SHORTENED = 10**12
+
+
 def number_text(number: int | Fraction) -> str:
     """A number with at most twelve significant digits, also beyond the range of `float`: "2.5", "1e+20"."""
     quotient = _TWELVE_DIGITS.divide(Decimal(number.numerator), Decimal(number.denominator))
@@ -256,12 +261,15 @@ def number_text(number: int | Fraction) -> str:
 
 def _steps_text(value: int | Fraction, steps: tuple[tuple[str, int], ...]) -> str:
     """The value in the largest unit in which it is at least 1."""
-    exact = Fraction(value)
+    exact = value if isinstance(value, int) else Fraction(value)
     unit, size = _step(exact, steps)
-    return f"{number_text(exact / size)} {unit}"
+    whole, rest = divmod(exact.numerator, size * exact.denominator)
+    if not rest and abs(whole) < _SHORTENED:
+        return f"{whole} {unit}"
+    return f"{number_text(Fraction(exact) / size)} {unit}"
 
 
-def _step(value: Fraction, steps: tuple[tuple[str, int], ...]) -> tuple[str, int]:
+def _step(value: int | Fraction, steps: tuple[tuple[str, int], ...]) -> tuple[str, int]:
     """The largest unit in which a value is at least 1; compared as whole numbers, which takes a tenth of the time of fractions."""
     magnitude, parts = abs(value.numerator), value.denominator
     return next((step for step in steps if magnitude >= step[1] * parts), steps[-1])
@@ -276,6 +284,7 @@ def time_text(value: Time | Fraction) -> str:
 _DIGITS = 4
 
 
+@lru_cache(maxsize=1 << 14)
 def rounded_time_text(value: Time | Fraction, rounding: Rounding, limit: Time | Fraction | None = None) -> str:
     """A time for tables: whole numbers of its unit as they are, others with four significant digits, or without decimals.
 
@@ -290,11 +299,11 @@ def rounded_time_text(value: Time | Fraction, rounding: Rounding, limit: Time | 
     >>> rounded_time_text(12_344_900 * NANOSECOND, Rounding.UP, limit=12_345 * MICROSECOND)
     '12.3449 ms'
     """
-    exact = Fraction(value)
+    exact = value if isinstance(value, int) else Fraction(value)
     _, size = _step(exact, _TIME_STEPS)
     if exact.denominator == 1 and exact.numerator % size == 0:
         return time_text(value)
-    return time_text(rounded(exact / size, rounding, None if limit is None else Fraction(limit) / size) * size)
+    return time_text(rounded(Fraction(exact) / size, rounding, None if limit is None else Fraction(limit) / size) * size)
 
 
 def rounded(value: Fraction, rounding: Rounding, limit: int | Fraction | None = None) -> Fraction:

@@ -18,6 +18,8 @@ from amalthea_uros.units import Time
 #: The quantity of a measured time that is of an object as a whole: the response time of a process, the reaction time of a chain.
 WHOLE_TIME: Final = "time"
 _MEDIAN = Fraction(1, 2)
+#: So many values are added sooner one by one than as arrays.
+_FEW = 100
 #: The percentiles that are computed where all values are known.
 PERCENTILES = (_MEDIAN, Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
 
@@ -62,21 +64,14 @@ def statistics_of(values: Numbers) -> TimeStatistics:
     ------
     InvalidArgumentError : there are none.
     """
-    import numpy as np
-
-    from amalthea_uros._internal.exact_sums import sums, sums_of_squares
-
     if not len(values):
         raise InvalidArgumentError("there are no values, so they have no statistics")
-
-    ordered = np.sort(values)
+    ordered, total, squares = _of_few(values) if len(values) <= _FEW else _of_many(values)
     count, first = len(ordered), int(ordered[0])
-    deviations = (ordered - first)[None, :]
-    (total,), (squares,) = sums(deviations), sums_of_squares(deviations)
     percentiles = {
         share: int(ordered[-(-share.numerator * count // share.denominator) - 1])
         for share in PERCENTILES
-        if share == _MEDIAN or count * (share.denominator - share.numerator) > share.denominator
+        if share is _MEDIAN or count * (share.denominator - share.numerator) > share.denominator
     }
     return TimeStatistics(
         count=count,
@@ -86,6 +81,25 @@ def statistics_of(values: Numbers) -> TimeStatistics:
         variance=Fraction(squares * count - total * total, count * count),
         percentiles=percentiles,
     )
+
+
+def _of_few(values: Numbers) -> tuple[Sequence[int], int, int]:
+    """The values in their order, and the sums of their distances from the least one and of the squares of these."""
+    ordered = sorted(values.tolist())
+    distances = [value - ordered[0] for value in ordered]
+    return ordered, sum(distances), sum(distance * distance for distance in distances)
+
+
+def _of_many(values: Numbers) -> tuple[Numbers, int, int]:
+    """The same, by numpy."""
+    import numpy as np
+
+    from amalthea_uros._internal.exact_sums import sums, sums_of_squares
+
+    ordered = np.sort(values)
+    distances = (ordered - ordered[0])[None, :]
+    (total,), (squares,) = sums(distances), sums_of_squares(distances)
+    return ordered, total, squares
 
 
 def statistics_or_none(values: Numbers) -> TimeStatistics | None:

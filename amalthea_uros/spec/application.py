@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
-
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.fields import Examples, Limits, entry
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Rate, Size, described
@@ -41,15 +40,15 @@ class CallbackSection(DescriptionSection):
     """Name of the callback, and of its task."""
     execution_time: ExecutionTimeSection
     """Execution time of the callback."""
-    reads: list[Name] = Field(default_factory=list)
+    reads: list[Name] = entry(default_factory=list)
     """Labels that it reads at its start."""
-    writes: list[Name] = Field(default_factory=list)
+    writes: list[Name] = entry(default_factory=list)
     """Labels that it writes at its end."""
-    publishes: list[Name] = Field(default_factory=list)
+    publishes: list[Name] = entry(default_factory=list)
     """Topics that it publishes to: those of its node, or of another node if only one has a publisher for it."""
-    requests: list[Name] = Field(default_factory=list)
+    requests: list[Name] = entry(default_factory=list)
     """Clients of its node that it sends requests with."""
-    runs_in: Annotated[Name, Field(examples=["own-task", "executor"])] | None = None
+    runs_in: Annotated[Name, Examples(["own-task", "executor"])] | None = None
     """Where it runs: `own-task`, a separate task; `executor`, the first executor; or the name of an executor; default: that of its
     node, else `callbacks` of the executor."""
     task_period: Duration | None = None
@@ -197,7 +196,7 @@ class ParameterServer(DescriptionSection):
 class Lifecycle(DescriptionSection):
     """The services of a lifecycle node."""
 
-    services: Annotated[int, Field(strict=True, ge=1, le=3)] = 3
+    services: Annotated[int, Limits(ge=1, le=3)] = 3
     """Number of services that are added to the executor."""
     execution_time: ExecutionTimeSection
     """Execution time of answering a request."""
@@ -216,23 +215,23 @@ class NodeSection(DescriptionSection):
     """Name of the node."""
     core: Name | None = None
     """Core of its callbacks; default: the first core."""
-    runs_in: Annotated[Name, Field(examples=["own-task", "executor"])] | None = None
+    runs_in: Annotated[Name, Examples(["own-task", "executor"])] | None = None
     """Where its callbacks run, unless they say otherwise: `own-task`, `executor`, or the name of an executor."""
-    subscriptions: list[Subscription] = Field(default_factory=list)
+    subscriptions: list[Subscription] = entry(default_factory=list)
     """Its subscriptions."""
-    publishers: list[Publisher] = Field(default_factory=list)
+    publishers: list[Publisher] = entry(default_factory=list)
     """Its publishers."""
-    timers: list[Timer] = Field(default_factory=list)
+    timers: list[Timer] = entry(default_factory=list)
     """Its timers."""
-    services: list[ServiceSection] = Field(default_factory=list)
+    services: list[ServiceSection] = entry(default_factory=list)
     """Its service servers."""
-    clients: list[Client] = Field(default_factory=list)
+    clients: list[Client] = entry(default_factory=list)
     """Its service clients."""
-    guard_conditions: list[GuardCondition] = Field(default_factory=list)
+    guard_conditions: list[GuardCondition] = entry(default_factory=list)
     """Its guard conditions."""
-    action_servers: list[ActionServer] = Field(default_factory=list)
+    action_servers: list[ActionServer] = entry(default_factory=list)
     """Its action servers."""
-    action_clients: list[ActionClient] = Field(default_factory=list)
+    action_clients: list[ActionClient] = entry(default_factory=list)
     """Its action clients."""
     parameter_server: ParameterServer | None = None
     """Its parameter server."""
@@ -243,5 +242,5 @@ class NodeSection(DescriptionSection):
 class Application(DescriptionSection):
     """The micro-ROS application."""
 
-    nodes: list[NodeSection] = Field(default_factory=list)
+    nodes: list[NodeSection] = entry(default_factory=list)
     """Its nodes."""

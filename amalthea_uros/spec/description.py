@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
-
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros.spec.application import Application
+from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.host import HostSection
 from amalthea_uros.spec.middleware import Middleware
@@ -27,27 +26,27 @@ class Description(DescriptionSection):
     """Name of the application."""
     hardware: HardwareSection
     """The controller."""
-    os: OsSection = Field(default_factory=OsSection.model_construct)
+    os: OsSection = entry(default_factory=OsSection.model_construct)
     """The operating system."""
-    middleware: Middleware = Field(default_factory=Middleware.model_construct)
+    middleware: Middleware = entry(default_factory=Middleware.model_construct)
     """The generic micro-ROS model."""
-    application: Application = Field(default_factory=Application.model_construct)
+    application: Application = entry(default_factory=Application.model_construct)
     """The micro-ROS application."""
     host: HostSection | None = None
     """The host with ROS 2 at the other end of the transport."""
-    tasks: list[TaskSection] = Field(default_factory=list)
+    tasks: list[TaskSection] = entry(default_factory=list)
     """Tasks of the controller that are not part of the micro-ROS application."""
-    isrs: list[IsrSection] = Field(default_factory=list)
+    isrs: list[IsrSection] = entry(default_factory=list)
     """Interrupt service routines of the controller that are not part of the micro-ROS application."""
-    labels: dict[Name, LabelSection] = Field(default_factory=dict)
+    labels: dict[Name, LabelSection] = entry(default_factory=dict)
     """Variables; one that is read or written somewhere needs no entry if its size and memory are the default ones."""
-    chains: list[Chain] = Field(default_factory=list)
+    chains: list[Chain] = entry(default_factory=list)
     """Cause-effect chains."""
-    requirements: list[RequirementSection] = Field(default_factory=list)
+    requirements: list[RequirementSection] = entry(default_factory=list)
     """Requirements on processes."""
 
 
-#: The draft that editors support; pydantic writes a later one, of which this format needs only other keywords.
+#: The draft that editors support.
 _DRAFT = "http://json-schema.org/draft-07/schema#"
 #: Where the schema is found on the web, which is also its name.
 _ID = f"{DOCUMENTATION}/app.schema.json"
@@ -57,7 +56,9 @@ _OTHER_KEYS = f"^({EXTENSION}|<<$)"
 
 def json_schema() -> dict[str, Any]:
     """The schema, draft-07, with the messages and snippets of yaml-language-server."""
-    schema = Description.model_json_schema(by_alias=True, ref_template="#/definitions/{model}")
+    from amalthea_uros.spec.section_schemas import whole_schema
+
+    schema = whole_schema(Description, "#/definitions/{name}")
     definitions: dict[str, Any] = schema.pop("$defs")
     whole: dict[str, Any] = {"$schema": _DRAFT, "$id": _ID, "title": "amuros application"} | _tidied(schema)
     named = {_name(name): _tidied(definition) for name, definition in definitions.items()}

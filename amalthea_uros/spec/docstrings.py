@@ -1,6 +1,6 @@
 """The docstrings of the fields of sections, as descriptions in the JSON Schema.
 
-pydantic reads them from the source when it makes a class, which takes a tenth of a run that needs none of them.
+They are read from the source when somebody needs them.
 """
 
 from __future__ import annotations
@@ -10,28 +10,28 @@ import inspect
 from functools import cache
 from textwrap import dedent
 
-from pydantic import BaseModel
+from amalthea_uros.spec.section import DescriptionSection
 
 
-def field_docstrings(section: type[BaseModel]) -> dict[str, str]:
+def field_docstrings(section: type[DescriptionSection]) -> dict[str, str]:
     """The docstrings of the fields of a class and of those that it extends, by the keys that a file has.
 
     A section whose own docstring is the same needs no second one.
     """
     texts: dict[str, str] = {}
     for base in reversed(section.__mro__):
-        if issubclass(base, BaseModel) and base is not BaseModel:
+        if issubclass(base, DescriptionSection) and base is not DescriptionSection:
             texts |= _of_class(base)
     fields = section.model_fields.items()
     return {
-        field.alias or name: texts[name]
+        field.key: texts[name]
         for name, field in fields
         if name in texts and not (isinstance(field.annotation, type) and inspect.getdoc(field.annotation) == texts[name])
     }
 
 
 @cache
-def _of_class(section: type[BaseModel]) -> dict[str, str]:
+def _of_class(section: type[DescriptionSection]) -> dict[str, str]:
     (definition,) = ast.parse(dedent(inspect.getsource(section))).body
     assert isinstance(definition, ast.ClassDef)
     texts = {}

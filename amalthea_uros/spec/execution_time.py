@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
-
+from amalthea_uros.spec.fields import Limits, entry, examines
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import Count, Duration, Name, Number, described, problem
 
@@ -52,14 +51,14 @@ class ExecutionTimeSection(Shorthand):
     """First shape parameter of the beta distribution."""
     beta: Number | None = None
     """Second shape parameter of the beta distribution."""
-    exceeding: Annotated[Number, Field(lt=1000)] | None = None
+    exceeding: Annotated[Number, Limits(lt=1000)] | None = None
     """Per mille of the execution times of a Weibull distribution that exceed `max`."""
-    histogram: list[BucketSection] | None = Field(None, min_length=1)
+    histogram: list[BucketSection] | None = entry(None, min_length=1)
     """Measured execution times."""
-    on: dict[Name, ExecutionTimeSection] | None = Field(None, min_length=1)
+    on: dict[Name, ExecutionTimeSection] | None = entry(None, min_length=1)
     """Execution times by platform or core type; `default` for all others."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_complete(self) -> Self:
         if self.on is not None:
             self._only("on")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
-
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.fields import Limits, entry
 from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
@@ -37,7 +36,7 @@ class ExecutorCost(Shorthand):
     """Execution time of every activation."""
     per_ready_callback: ExecutionTimeSection | None = None
     """Additional execution time per ready callback."""
-    per_message: MessageCost = Field(default_factory=MessageCost.model_construct)
+    per_message: MessageCost = entry(default_factory=MessageCost.model_construct)
     """Additional execution time per message taken."""
     per_timer: ExecutionTimeSection | None = None
     """Additional execution time per timer, in every activation."""
@@ -62,7 +61,7 @@ class TriggerSection(Shorthand):
     """`any`: as soon as any callback is ready; `all`: when all callbacks are ready; `always`: in every iteration."""
     one: Name | None = None
     """As soon as this callback is ready."""
-    custom: Annotated[list[Annotated[list[Name], Field(min_length=1)]], Field(min_length=1)] | None = None
+    custom: Annotated[list[Annotated[list[Name], Limits(min_length=1)]], Limits(min_length=1)] | None = None
     """As soon as all callbacks of one of these sets are ready: what a trigger function of the application returns."""
 
 
@@ -99,16 +98,16 @@ class ExecutorSection(DescriptionSection):
     """Number of handles that `rclc_executor_init` gets; default: as many as it has."""
     stack: Size | None = None
     """Stack of its thread or task."""
-    execution_time: ExecutorCost = Field(default_factory=ExecutorCost.model_construct)
+    execution_time: ExecutorCost = entry(default_factory=ExecutorCost.model_construct)
     """Execution time of an activation."""
     callbacks: Annotated[Literal["own-task", "in-executor"], _PLACES] = "own-task"
     """Where callbacks without `runs_in` run: each in a separate task, or one after the other in the executor; default: `in-executor`
     for an executor with a `loop`, else what the platform says, `own-task` if it says nothing."""
-    order: list[Name] = Field(default_factory=list)
+    order: list[Name] = entry(default_factory=list)
     """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
     semantics: Annotated[Literal["ROS", "LET"], _SEMANTICS] = "ROS"
     """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
-    trigger: TriggerSection = Field(default_factory=TriggerSection.model_construct)
+    trigger: TriggerSection = entry(default_factory=TriggerSection.model_construct)
     """Condition under which callbacks in the executor run."""
 
 

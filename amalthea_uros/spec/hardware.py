@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field
-
+from amalthea_uros.spec.fields import Before, Limits, WrittenAs, entry
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import CountOrNone, Name, Rate, Size, described, unexpected
 
@@ -39,8 +38,9 @@ def _of_number(value: Any) -> Any:
 #: The cores, or their number: 4 means Core_0 to Core_3.
 Cores: TypeAlias = Annotated[
     list[CoreSection],
-    Field(min_length=1, max_length=MAX_CORES),
-    BeforeValidator(_of_number, json_schema_input_type=Annotated[int, Field(ge=1, le=MAX_CORES)] | list[CoreSection]),
+    Limits(min_length=1, max_length=MAX_CORES),
+    Before(_of_number),
+    WrittenAs(Annotated[int, Limits(ge=1, le=MAX_CORES)] | list[CoreSection]),
 ]
 
 
@@ -55,7 +55,7 @@ _MEMORY_KINDS = described(
 class LatenciesSection(DescriptionSection):
     """Core cycles of accesses to a memory from certain cores."""
 
-    cores: list[Name] = Field(min_length=1)
+    cores: list[Name] = entry(min_length=1)
     """Cores that it holds for."""
     read_cycles: CountOrNone
     """Core cycles per read access."""
@@ -76,11 +76,11 @@ class MemorySection(DescriptionSection):
     """Core cycles per read access."""
     write_cycles: CountOrNone | None = None
     """Core cycles per write access."""
-    accesses: list[LatenciesSection] = Field(default_factory=list)
+    accesses: list[LatenciesSection] = entry(default_factory=list)
     """Core cycles per access where they depend on the core: a memory of one core is slower for the others."""
 
 
-class HardwareSection(Shorthand, defer_build=False):
+class HardwareSection(Shorthand):
     """The controller that the application runs on: a platform, or a mapping with more.
 
     Other keys override those of the platform.
@@ -89,7 +89,7 @@ class HardwareSection(Shorthand, defer_build=False):
     shorthand = ("platform",)
     plain_value = "A known platform, or a file."
 
-    platform: Name | None = Field(
+    platform: Name | None = entry(
         None, examples=["esp32", "nucleo-f446re", "bodas-rc18-12-40", "generic", "./my-controller.yaml"]
     )
     """A known platform (`bodas-rc18-12-40`, `ek-ra6m5`, `esp32`, `esp32-s3`, `generic`, `host`, `nucleo-f446re`, `nucleo-f746zg`,

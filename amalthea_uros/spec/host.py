@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
-
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.fields import Limits, entry, examines
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.transports import LatencySection
 from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Rate, described, problem
@@ -50,18 +49,18 @@ class ThreadSection(DescriptionSection):
 
     policy: Annotated[Literal["fifo", "deadline", "other"], _POLICIES] = "other"
     """Its scheduling policy."""
-    priority: Annotated[int, Field(strict=True, ge=1, le=99)] | None = None
+    priority: Annotated[int, Limits(ge=1, le=99)] | None = None
     """Priority of `SCHED_FIFO`; a higher number is a higher priority."""
     core: CountOrNone | None = None
     """Core on which it runs, counted from 0."""
-    cores: Annotated[list[CountOrNone], Field(min_length=1)] | None = None
+    cores: Annotated[list[CountOrNone], Limits(min_length=1)] | None = None
     """Cores on which it may run; default: all."""
     budget: Duration | None = None
     """Budget of `SCHED_DEADLINE` in each period."""
     period: Duration | None = None
     """Period of `SCHED_DEADLINE`."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_complete(self) -> Self:
         needed = {"fifo": ("priority",), "deadline": ("budget", "period"), "other": ()}[self.policy]
         for key in needed:
@@ -90,10 +89,10 @@ class HostExecutorSection(DescriptionSection):
     """Class of rclcpp."""
     threads: Count | None = None
     """Number of threads of a multi-threaded executor."""
-    thread: ThreadSection = Field(default_factory=ThreadSection)
+    thread: ThreadSection = entry(default_factory=ThreadSection)
     """How its thread is scheduled."""
 
-    @model_validator(mode="after")
+    @examines
     def _has_threads(self) -> Self:
         if self.type == "multi-threaded" and self.threads is None:
             raise problem("a multi-threaded executor needs 'threads': the default of rclcpp depends on the computer")
@@ -109,11 +108,11 @@ class HostCallbackSection(DescriptionSection):
     """Name of the callback."""
     execution_time: ExecutionTimeSection
     """Execution time of the callback, with taking its message and publishing."""
-    reads: list[Name] = Field(default_factory=list)
+    reads: list[Name] = entry(default_factory=list)
     """Variables that it reads at its start."""
-    writes: list[Name] = Field(default_factory=list)
+    writes: list[Name] = entry(default_factory=list)
     """Variables that it writes at its end."""
-    publishes: list[Name] = Field(default_factory=list)
+    publishes: list[Name] = entry(default_factory=list)
     """Topics that it publishes at its end."""
     calls: list[Name] = Field(default_factory=list)
     """Services of the host that it calls at its end, without waiting for the response."""
@@ -170,11 +169,11 @@ class HostNodeSection(DescriptionSection):
     """Name of the node."""
     executor: Name
     """Executor that it was added to."""
-    groups: list[CallbackGroupSection] = Field(default_factory=list)
+    groups: list[CallbackGroupSection] = entry(default_factory=list)
     """Its callback groups, besides the default one."""
-    subscriptions: list[HostSubscription] = Field(default_factory=list)
+    subscriptions: list[HostSubscription] = entry(default_factory=list)
     """Its subscriptions."""
-    timers: list[HostTimer] = Field(default_factory=list)
+    timers: list[HostTimer] = entry(default_factory=list)
     """Its timers."""
     services: list[HostService] = Field(default_factory=list)
     """Its services."""
@@ -200,13 +199,13 @@ class HostSection(DescriptionSection):
 
     ros: Annotated[Literal["foxy", "galactic", "humble", "iron", "jazzy", "rolling"], _RELEASES]
     """Distribution of ROS 2, which decides how executors work."""
-    computers: list[ComputerSection] = Field(min_length=1)
+    computers: list[ComputerSection] = entry(min_length=1)
     """The computers."""
     latency: LatencySection | None = None
     """Latency of all topics without their own."""
-    executors: list[HostExecutorSection] = Field(min_length=1)
+    executors: list[HostExecutorSection] = entry(min_length=1)
     """The executors."""
-    nodes: list[HostNodeSection] = Field(min_length=1)
+    nodes: list[HostNodeSection] = entry(min_length=1)
     """The nodes."""
-    topics: list[HostTopicSection] = Field(default_factory=list)
+    topics: list[HostTopicSection] = entry(default_factory=list)
     """Topics with a latency or a rate of their own."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
-
+from amalthea_uros.spec.fields import Limits, examines
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import Duration, Name, Offset, problem
 
@@ -23,14 +22,14 @@ class LoopItem(DescriptionSection):
     """Time that the thread sleeps; others execute meanwhile."""
     busy_wait: Offset | None = None
     """Time that the thread waits without sleeping, as in `HAL_Delay`: nothing of lower priority executes meanwhile."""
-    publish: Annotated[list[Name], Field(min_length=1)] | None = None
+    publish: Annotated[list[Name], Limits(min_length=1)] | None = None
     """Topics on which it publishes outside of callbacks; how long the loop takes is then unknown."""
     ping: Offset | None = None
     """Timeout of `rmw_uros_ping_agent`; how long the loop takes is then unknown."""
     sync: Offset | None = None
     """Timeout of `rmw_uros_sync_session`; how long the loop takes is then unknown."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_one_item(self) -> Self:
         keys = [key for key in type(self).model_fields if key != "executor"]
         stated = [key for key in keys if getattr(self, key) is not None]
@@ -67,10 +66,10 @@ class LoopSection(Shorthand):
     """Timeout of `rclc_executor_spin`, an endless `spin_some`; that of rclc is `1 s`."""
     timeout: Duration | None = None
     """Timeout of the executor, with `spin_period`; default: that of the middleware, 1 s for rclc."""
-    items: Annotated[list[LoopItem], Field(min_length=1)] | None = None
+    items: Annotated[list[LoopItem], Limits(min_length=1)] | None = None
     """What the thread does again and again, in this order: `rclc_executor_spin_some` of this executor once, and more."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_one_of_four(self) -> Self:
         stated = [key for key in _SPINS if getattr(self, key) is not None]
         if len(stated) != 1:

@@ -6,12 +6,10 @@ import re
 from fractions import Fraction
 from typing import Annotated, Any, Self, TypeAlias
 
-from pydantic import model_validator
-
 from amalthea_uros import units
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.spec.fields import Before, examines
 from amalthea_uros.spec.section import Shorthand
-from amalthea_uros.spec.validators import Before
 from amalthea_uros.spec.values import editor_schema, problem, unexpected
 
 #: More are no exception; each takes a place in the memory of a simulation.
@@ -85,7 +83,7 @@ class LossesSection(Shorthand):
     to_agent: _Rate | None = None
     """Of those to the agent alone."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_one_or_the_other(self) -> Self:
         if self.both is not None and (self.to_controller is not None or self.to_agent is not None):
             raise problem("'both' is for both directions together; state either it or the directions")

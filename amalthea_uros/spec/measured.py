@@ -6,11 +6,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple, TypeAlias
 
-from pydantic import Field
-
 from amalthea_uros._internal.resources import MEASURED, known_measured
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.known_files import KnownFiles
 from amalthea_uros.spec.merging import has_parts
 from amalthea_uros.spec.middleware import Middleware
@@ -53,11 +52,11 @@ class MeasuredProfile(DescriptionSection):
     """What was measured, as the end of a sentence: '30,000 round trips of ...'."""
     basis: Annotated[Literal["fitted", "derived", "measured"], _BASES]
     """How the times follow from that."""
-    agent: Agent = Field(default_factory=Agent.model_construct)
+    agent: Agent = entry(default_factory=Agent.model_construct)
     """The times in the agent."""
-    transport: TransportSection = Field(default_factory=TransportSection.model_construct)
+    transport: TransportSection = entry(default_factory=TransportSection.model_construct)
     """The transport, with its driver."""
-    sources: dict[Name, str] = Field(default_factory=dict)
+    sources: dict[Name, str] = entry(default_factory=dict)
     """How single figures follow, by their keys."""
 
 

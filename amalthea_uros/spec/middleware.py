@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
-
 from amalthea_uros.spec.executors import ExecutorSection, MessageCost, with_shared_loops
+from amalthea_uros.spec.fields import Limits, entry
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.transports import Agent, TransportSection
 from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Priority, Size, described
@@ -54,7 +53,7 @@ class InitialisationSection(DescriptionSection):
     response_time: ResponseTime | None = None
     """Response time of the agent, from a request to its response as the client sees it; if omitted, only the minimum that the wire
     needs is known."""
-    request_sizes: RequestSizes = Field(default_factory=RequestSizes.model_construct)
+    request_sizes: RequestSizes = entry(default_factory=RequestSizes.model_construct)
     """Sizes of the requests; default: unknown."""
 
 
@@ -89,7 +88,7 @@ class PoolSizes(DescriptionSection):
     """Sessions with an agent."""
     RMW_UXRCE_MAX_NODES: Count | None = None
     """Nodes."""
-    RMW_UXRCE_MAX_TOPICS: Annotated[int, Field(strict=True, ge=-1)] | None = None
+    RMW_UXRCE_MAX_TOPICS: Annotated[int, Limits(ge=-1)] | None = None
     """Topics, one per publisher and per subscription; -1: as many as `RMW_UXRCE_MAX_PUBLISHERS` and `RMW_UXRCE_MAX_SUBSCRIPTIONS`
     together."""
     RMW_UXRCE_MAX_PUBLISHERS: CountOrNone | None = None
@@ -188,7 +187,9 @@ class PoolSizes(DescriptionSection):
 
 def option_units() -> dict[str, str]:
     """The unit of each build option: "B", "ms" or "number"; "switch" for a truth value, "word" for a choice."""
-    properties = PoolSizes.model_json_schema()["properties"]
+    from amalthea_uros.spec.section_schemas import whole_schema
+
+    properties = whole_schema(PoolSizes)["properties"]
     return {key: _unit(properties[key]["anyOf"][0]) for key in PoolSizes.model_fields}
 
 
@@ -230,7 +231,7 @@ class MiddlewareTask(DescriptionSection):
     """Its stack."""
 
 
-class Middleware(DescriptionSection, defer_build=False):
+class Middleware(DescriptionSection):
     """The generic micro-ROS model of a platform."""
 
     profile: Name = "xrce-dds"
@@ -249,27 +250,27 @@ class Middleware(DescriptionSection, defer_build=False):
     own port is used."""
     policy: Annotated[Literal["FixedPriorityPreemptive", "OSEK"], _POLICIES] = "FixedPriorityPreemptive"
     """Scheduling policy of the operating system."""
-    task_periods: list[Duration] = Field(default_factory=list)
+    task_periods: list[Duration] = entry(default_factory=list)
     """Available task periods; if omitted, any period is available."""
-    executor: ExecutorSection = Field(default_factory=ExecutorSection.model_construct)
+    executor: ExecutorSection = entry(default_factory=ExecutorSection.model_construct)
     """The executor, if there is only one."""
-    executors: list[ExecutorSection] = Field(default_factory=list)
+    executors: list[ExecutorSection] = entry(default_factory=list)
     """The executors, if there are several; the first one serves callbacks that name no other."""
     multithread: bool = False
     """Whether the middleware is built for several threads: then they share its session, one at a time."""
-    publish: MessageCost = Field(default_factory=MessageCost.model_construct)
+    publish: MessageCost = entry(default_factory=MessageCost.model_construct)
     """Execution time of publishing a message, added to that of the callback."""
-    reliable: Reliable = Field(default_factory=Reliable.model_construct)
+    reliable: Reliable = entry(default_factory=Reliable.model_construct)
     """How reliable messages are sent."""
-    tasks: list[MiddlewareTask] = Field(default_factory=list)
+    tasks: list[MiddlewareTask] = entry(default_factory=list)
     """Tasks or threads of the middleware."""
-    transport: TransportSection = Field(default_factory=TransportSection.model_construct)
+    transport: TransportSection = entry(default_factory=TransportSection.model_construct)
     """The transport to the agent."""
-    agent: Agent = Field(default_factory=Agent.model_construct)
+    agent: Agent = entry(default_factory=Agent.model_construct)
     """The agent, or the router of the middleware."""
-    initialisation: InitialisationSection = Field(default_factory=InitialisationSection.model_construct)
+    initialisation: InitialisationSection = entry(default_factory=InitialisationSection.model_construct)
     """Creation of the entities."""
-    limits: PoolSizes = Field(default_factory=PoolSizes.model_construct)
+    limits: PoolSizes = entry(default_factory=PoolSizes.model_construct)
     """Static pools."""
 
     @property

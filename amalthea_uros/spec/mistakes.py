@@ -1,4 +1,4 @@
-"""The errors of pydantic as findings: what is wrong, where, and what to do; and what is left of a file without its mistakes."""
+"""The errors in sections as findings: what is wrong, where, and what to do; and what is left of a file without its mistakes."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from pydantic_core import ErrorDetails
-
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.spec.nodes import MappingNode, Node, NodePlace, ScalarNode, SequenceNode, YamlText
 from amalthea_uros.spec.schema_places import Schema, inner_schemas, nearest_places, schema_of, variants
 from amalthea_uros.spec.section import DescriptionSection
+from amalthea_uros.spec.type_checks import ErrorDetails
 from amalthea_uros.units import shortened
 
 _WHOLE_NUMBER = re.compile(r"-?\d{1,30}", re.ASCII)
@@ -49,14 +48,14 @@ _SENTENCES = {
     "greater_than": ("must be greater than {gt:g}", ""),
     "less_than": ("must be less than {lt:g}", ""),
     "int_type": ("expected a whole number", ""),
-    "int_parsing_size": ("expected a smaller number", ""),
+    "bool_type": ("{message}", ""),
     "string_type": ("expected a string", ""),
     "literal_error": ("expected {expected}", ""),
 }
 
 
 class Mistake(NamedTuple):
-    """An error of pydantic in the nodes of a file.
+    """An error in the nodes of a file.
 
     Attributes
     ----------
@@ -78,7 +77,7 @@ class Mistake(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The last part of the path that pydantic gives."""
+        """The last part of the path to the error."""
         return str(self.details["loc"][-1]) if self.details["loc"] else ""
 
 
@@ -129,7 +128,7 @@ def _before(nodes: set[int], holders: Iterable[MappingNode]) -> set[int]:
 
 
 def _path(loc: tuple[int | str, ...], node: Node) -> Iterator[Node]:
-    """The nodes on the path to an error; parts that exist only in pydantic are skipped."""
+    """The nodes on the path to an error; parts that are no nodes are skipped."""
     yield node
     for part in loc:
         if isinstance(node, MappingNode) and part in node.items:

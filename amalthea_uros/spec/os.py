@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
-
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.fields import Examples, entry, examines
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import CountOrNone, Duration, Name, OffsetOrNumberZero, PriorityNumber, described, problem
 
@@ -34,12 +33,9 @@ class OverheadSection(Shorthand):
     termination: OverheadTime | None = None
     """Time after the last function of the job."""
 
-    @model_validator(mode="before")
     @classmethod
     def _of_plain_value(cls, value: Any) -> Any:
-        if isinstance(value, DescriptionSection) or (isinstance(value, dict) and not cls._is_nested(value)):
-            return value
-        return {"activation": value, "termination": 0}
+        return value if cls._is_whole(value) else {"activation": value, "termination": 0}
 
 
 _LEVELS = described(
@@ -57,7 +53,7 @@ class OsOverhead(DescriptionSection):
     """Time per job of a task, after its last function."""
     activations_run_in: Annotated[Literal["task", "interrupt"], _LEVELS] = "task"
     """Where the work for the activation of a task is executed."""
-    isr: OverheadSection = Field(default_factory=OverheadSection.model_construct)
+    isr: OverheadSection = entry(default_factory=OverheadSection.model_construct)
     """Time per execution of an interrupt service routine."""
 
 
@@ -76,7 +72,7 @@ class PriorityRange(DescriptionSection):
     highest: PriorityNumber
     """Highest number."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_ordered(self) -> Self:
         if self.lowest > self.highest:
             raise problem("'lowest' is greater than 'highest'")
@@ -92,12 +88,12 @@ class SleepTicks(DescriptionSection):
     """Number of ticks by which a sleep can be longer than the ticks it is rounded up to."""
 
 
-class OsSection(DescriptionSection, defer_build=False):
+class OsSection(DescriptionSection):
     """The operating system."""
 
-    rtos: (
-        Annotated[Name, Field(examples=["freertos", "zephyr", "nuttx", "bare-metal", "osek", "posix-fifo", "posix-rr"])] | None
-    ) = None
+    rtos: Annotated[Name, Examples(["freertos", "zephyr", "nuttx", "bare-metal", "osek", "posix-fifo", "posix-rr"])] | None = (
+        None
+    )
     """The operating system by name, or a file that describes it; default: that of the platform."""
     tick: Duration | None = None
     """Its tick, in which delays and timeouts are counted; default: that of the operating system."""
@@ -111,7 +107,7 @@ class OsSection(DescriptionSection, defer_build=False):
     """Time after which ready tasks of the same priority take turns; `0`: they do not; default: that of the operating system."""
     sleep_ticks: SleepTicks | None = None
     """How exactly a task sleeps; default: as the operating system does; without a tick, exactly as long as asked."""
-    overhead: OsOverhead = Field(default_factory=OsOverhead.model_construct)
+    overhead: OsOverhead = entry(default_factory=OsOverhead.model_construct)
     """What it costs to activate and end tasks and interrupt service routines; default: nothing."""
 
     @property

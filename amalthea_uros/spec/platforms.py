@@ -6,12 +6,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
-from pydantic import Field
-
 from amalthea_uros._internal.resources import PLATFORMS, RTOSES, known_platforms, known_rtoses
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.known_files import KnownFiles
 from amalthea_uros.spec.measured import with_measured
@@ -43,13 +42,13 @@ class Platform(DescriptionSection):
     """Name by which execution times refer to it."""
     hardware: HardwareSection
     """The hardware itself."""
-    os: OsSection = Field(default_factory=OsSection.model_construct)
+    os: OsSection = entry(default_factory=OsSection.model_construct)
     """The operating system that is usual on it; keys of the application override it."""
-    middleware: Middleware = Field(default_factory=Middleware.model_construct)
+    middleware: Middleware = entry(default_factory=Middleware.model_construct)
     """The generic micro-ROS model as ported to it; keys of the application override it, key by key."""
     source: str | None = None
     """Source of the figures."""
-    sources: dict[Name, str] = Field(default_factory=dict)
+    sources: dict[Name, str] = entry(default_factory=dict)
     """Sources of single figures, by their keys."""
 
 
@@ -62,11 +61,11 @@ class Rtos(DescriptionSection):
     """Name by which `os.rtos` refers to it."""
     title: Name
     """Its full name."""
-    os: OsSection = Field(default_factory=OsSection.model_construct)
+    os: OsSection = entry(default_factory=OsSection.model_construct)
     """Its properties; keys of the platform and of the application override them."""
-    middleware: Middleware = Field(default_factory=Middleware.model_construct)
+    middleware: Middleware = entry(default_factory=Middleware.model_construct)
     """The generic micro-ROS model as ported to it; keys of the platform and of the application override it, key by key."""
-    sources: dict[Name, str] = Field(default_factory=dict)
+    sources: dict[Name, str] = entry(default_factory=dict)
     """Sources of the figures, by their keys."""
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
-
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import (
@@ -53,7 +52,7 @@ class Times(DescriptionSection):
 
     period: Duration
     """Time after which the list repeats."""
-    at: list[Offset] = Field(min_length=1)
+    at: list[Offset] = entry(min_length=1)
     """Times of the activations, relative to the start of the period."""
     offset: Offset = 0
     """Start of the first period."""
@@ -64,13 +63,13 @@ class Steps(DescriptionSection):
 
     execution_time: ExecutionTimeSection | None = None
     """Execution time."""
-    reads: list[Name] = Field(default_factory=list)
+    reads: list[Name] = entry(default_factory=list)
     """Labels that it reads at its start."""
-    writes: list[Name] = Field(default_factory=list)
+    writes: list[Name] = entry(default_factory=list)
     """Labels that it writes at its end."""
-    triggers: list[Name] = Field(default_factory=list)
+    triggers: list[Name] = entry(default_factory=list)
     """Tasks that it activates at its end."""
-    locks: list[Name] = Field(default_factory=list)
+    locks: list[Name] = entry(default_factory=list)
     """Resources that it holds during its execution (priority ceiling protocol)."""
 
 
@@ -110,7 +109,7 @@ class ProcessSection(Steps):
     """Deadline relative to the activation."""
     overhead: OverheadSection | None = None
     """Overhead of the operating system per job; default: that of `os`."""
-    runnables: list[RunnableSection] = Field(default_factory=list)
+    runnables: list[RunnableSection] = entry(default_factory=list)
     """Its functions, in order; unnecessary for a process with one function."""
     stack: Size | None = None
     """Its stack; for tasks that share one stack: the most that it uses itself."""

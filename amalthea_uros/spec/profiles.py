@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
-
+from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
 
@@ -74,16 +73,16 @@ class ProfileData(DescriptionSection):
     """Full name of the middleware."""
     source: str = ""
     """Where the figures come from."""
-    sources: dict[Name, str] = Field(default_factory=dict)
+    sources: dict[Name, str] = entry(default_factory=dict)
     """Sources of single figures, by their keys."""
-    waiting: WaitingData = Field(default_factory=WaitingData.model_construct)
+    waiting: WaitingData = entry(default_factory=WaitingData.model_construct)
     """How an executor waits."""
-    sending: SendingData = Field(default_factory=SendingData.model_construct)
+    sending: SendingData = entry(default_factory=SendingData.model_construct)
     """How messages are sent."""
-    threads: list[ThreadData] = Field(default_factory=list)
+    threads: list[ThreadData] = entry(default_factory=list)
     """Its threads."""
-    sizes: dict[Name, SizeOrNothing] = Field(default_factory=dict)
+    sizes: dict[Name, SizeOrNothing] = entry(default_factory=dict)
     """Sizes of headers and other parts of its messages."""
-    options: dict[Name, CountOrNone] = Field(default_factory=dict)
+    options: dict[Name, CountOrNone] = entry(default_factory=dict)
     """Default values of build options where they differ from those of the packages, as the build takes them: lengths in bytes, times
     in milliseconds; `MTU` for that of the transport."""

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from pydantic import ValidationError
-
 from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.records import dataclass
@@ -18,6 +16,7 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.mistakes import Mistake, finding_of, repair, without_consequences
 from amalthea_uros.spec.nodes import MAX_FINDINGS, MappingNode, Node, ScalarNode, SequenceNode, YamlText, plain, read_nodes
 from amalthea_uros.spec.section import EXTENSION, DescriptionSection, attach_locations
+from amalthea_uros.spec.type_checks import WRONG, Errors
 
 GAP = "TODO"
 #: What to write for the keys that source code does not tell.
@@ -157,10 +156,11 @@ def _draft(node: Node, source: YamlText, findings: list[Finding], kind: type[S])
 
 
 def _validated(node: Node, kind: type[S]) -> tuple[S | None, list[Mistake]]:
-    try:
-        return kind.model_validate(plain(node)), []
-    except ValidationError as error:
-        return None, without_consequences([Mistake.of(details, node) for details in error.errors(include_url=False)])
+    errors: Errors = []
+    section = kind.checked(plain(node), (), errors)
+    if section is not WRONG:
+        return section, []
+    return None, without_consequences([Mistake.of(details, node) for details in errors])
 
 
 def _refuse_xml(path: Path, text: str) -> None:

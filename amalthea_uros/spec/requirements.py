@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
-
+from amalthea_uros.spec.fields import Limits, entry, examines
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.values import Count, Duration, Name, described, problem
 
@@ -30,7 +29,7 @@ class LimitsSection(Shorthand):
     max: Duration | None = None
     """Maximum that is allowed."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_something(self) -> Self:
         if self.min is None and self.max is None:
             raise problem("neither 'max' nor 'min' is given")
@@ -59,18 +58,18 @@ class Chain(DescriptionSection):
 
     name: Name
     """Name of the chain."""
-    path: list[Name] | None = Field(None, min_length=1)
+    path: list[Name] | None = entry(None, min_length=1)
     """Topics, executor, callbacks, tasks, interrupt service routines and functions, with labels after those that write
     them, from cause to effect."""
-    sequence: list[Name] | None = Field(None, min_length=1)
+    sequence: list[Name] | None = entry(None, min_length=1)
     """Chains that follow each other; each starts with the last event of the previous one."""
-    parallel: list[Annotated[list[Name], Field(min_length=1)]] | None = Field(None, min_length=2)
+    parallel: list[Annotated[list[Name], Limits(min_length=1)]] | None = entry(None, min_length=2)
     """Paths from the same start to the same end."""
     completed: Count = 1
     """Number of parallel paths that must complete: 1 for alternatives, all of them for a join."""
-    start: Moment = Field("start", alias="from")
+    start: Moment = entry("start", alias="from")
     """Event of the first member that starts the chain."""
-    end: Moment = Field("finish", alias="to")
+    end: Moment = entry("finish", alias="to")
     """Event of the last member that ends the chain."""
     reaction: LimitsSection | None = None
     """Limits on the reaction: from the start event to the end of the first job whose output is based on it."""
@@ -79,7 +78,7 @@ class Chain(DescriptionSection):
     jitter: ChainJitter | None = None
     """Limit on the jitter: the maximum minus the minimum of the reaction, or of the age."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_one_of_three(self) -> Self:
         stated = [key for key in ("path", "sequence", "parallel") if getattr(self, key) is not None]
         if len(stated) != 1:
@@ -138,7 +137,7 @@ class RequirementSection(DescriptionSection):
     jitter: Jitter | None = None
     """Limit on the jitter of the response time, or of another time."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_something(self) -> Self:
         if not any(isinstance(getattr(self, key), LimitsSection | Jitter) for key in type(self).model_fields):
             raise problem("the requirement has no limit; add one, e.g. response_time: 1 ms")

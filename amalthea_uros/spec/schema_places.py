@@ -16,8 +16,10 @@ Path: TypeAlias = Sequence[int | str]
 
 @cache
 def schema_of(kind: type[DescriptionSection]) -> dict[str, Any]:
-    """The schema of a section, as pydantic writes it."""
-    return kind.model_json_schema(by_alias=True)
+    """The schema of a section, with definitions."""
+    from amalthea_uros.spec.section_schemas import whole_schema
+
+    return whole_schema(kind)
 
 
 def variants(schema: Schema, whole: Schema) -> Iterator[Schema]:

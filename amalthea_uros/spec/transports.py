@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
-
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import MessageCost
+from amalthea_uros.spec.fields import After, Limits, entry, examines
 from amalthea_uros.spec.losses import LossesSection
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
-from amalthea_uros.spec.validators import After
 from amalthea_uros.spec.values import (
     BaudRate,
     BitRate,
@@ -42,7 +40,7 @@ class LatencySection(Shorthand):
     max: OffsetOrNumberZero
     """Maximum time."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_ordered(self) -> Self:
         if self.min > self.max:
             raise problem("'min' is greater than 'max'")
@@ -77,7 +75,7 @@ class ForeignFrameSection(DescriptionSection):
     """Name of the frame."""
     identifier: CanIdentifier
     """Its identifier; a lower one wins the arbitration."""
-    bytes: Annotated[int, Field(strict=True, ge=0, le=64)] = 8
+    bytes: Annotated[int, Limits(ge=0, le=64)] = 8
     """Data bytes."""
     period: Duration | None = None
     """Minimum time between two of them; default: unknown, so that messages of lower priority have no bound."""
@@ -95,11 +93,11 @@ class Can(DescriptionSection):
     """Bit rate of the bus."""
     identifier: Annotated[Literal["standard", "extended"], _FRAME_FORMATS] = "standard"
     """`standard`: identifiers of 11 bits; `extended`: 29 bits."""
-    identifiers: dict[Name, CanIdentifier] = Field(default_factory=dict)
+    identifiers: dict[Name, CanIdentifier] = entry(default_factory=dict)
     """Identifiers of messages, e.g. `{odometry_topic: 0x120, lift_request: 0x80}`; all others have one that loses against these."""
     interrupt: Interrupt | None = None
     """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
-    foreign: list[ForeignFrameSection] = Field(default_factory=list)
+    foreign: list[ForeignFrameSection] = entry(default_factory=list)
     """Foreign frames on the same bus."""
     dbc: Name | None = None
     """A DBC file with the foreign frames, relative to this file; those with a cycle time are foreign traffic."""
@@ -114,11 +112,11 @@ class CanFd(DescriptionSection):
     """Bit rate of the data phase."""
     identifier: Annotated[Literal["standard", "extended"], _FRAME_FORMATS] = "extended"
     """`standard`: identifiers of 11 bits; `extended`: 29 bits."""
-    identifiers: dict[Name, CanIdentifier] = Field(default_factory=dict)
+    identifiers: dict[Name, CanIdentifier] = entry(default_factory=dict)
     """Identifiers of messages; all others have one that loses against these."""
     interrupt: Interrupt | None = None
     """The interrupt for each received frame; if omitted, its cost is part of other execution times."""
-    foreign: list[ForeignFrameSection] = Field(default_factory=list)
+    foreign: list[ForeignFrameSection] = entry(default_factory=list)
     """Foreign frames on the same bus."""
     dbc: Name | None = None
     """A DBC file with the foreign frames, relative to this file; those with a cycle time are foreign traffic."""
@@ -142,9 +140,9 @@ class Driver(DescriptionSection):
     """How a call reads."""
     tick: Duration | None = None
     """Tick in which its calls wait; default: that of the operating system."""
-    write_cost: MessageCost = Field(default_factory=MessageCost.model_construct)
+    write_cost: MessageCost = entry(default_factory=MessageCost.model_construct)
     """Execution time of a write call."""
-    read_cost: MessageCost = Field(default_factory=MessageCost.model_construct)
+    read_cost: MessageCost = entry(default_factory=MessageCost.model_construct)
     """Execution time of a read call."""
     buffer: SizeOrNothing | None = None
     """Size of its receive buffer; what arrives when it is full is lost."""
@@ -155,9 +153,9 @@ class Serial(DescriptionSection):
 
     baud_rate: BaudRate = 115200
     """Symbols per second; each is a bit."""
-    bits_per_byte: Annotated[int, Field(strict=True, ge=8, le=13)] = 10
+    bits_per_byte: Annotated[int, Limits(ge=8, le=13)] = 10
     """Bits on the line per byte, with start, stop and parity bits: 10 for 8N1."""
-    driver: Driver = Field(default_factory=Driver.model_construct)
+    driver: Driver = entry(default_factory=Driver.model_construct)
     """How the driver moves bytes."""
     interrupt: Interrupt | None = None
     """The interrupt for each received piece; if omitted, its cost is part of other execution times."""
@@ -170,7 +168,7 @@ class UsbCdc(DescriptionSection):
     """Bits per second of the bus; default: full speed."""
     latency: LatencySection | None = None
     """Time that the host takes until it polls and passes a packet on, besides its transmission; default: unknown."""
-    driver: Driver = Field(default_factory=Driver.model_construct)
+    driver: Driver = entry(default_factory=Driver.model_construct)
     """How the driver moves bytes."""
     interrupt: Interrupt | None = None
     """The interrupt for each received packet."""
@@ -185,7 +183,7 @@ class NetworkSection(DescriptionSection):
     """Time in the network besides the transmission on that link: switches, access points, the stack of the host; default: unknown."""
     overhead: SizeOrNothing | None = None
     """Bytes per packet that are not content: headers of the network, preamble, gap; default: those of Ethernet."""
-    driver: Driver = Field(default_factory=Driver.model_construct)
+    driver: Driver = entry(default_factory=Driver.model_construct)
     """How the driver moves packets."""
     interrupt: Interrupt | None = None
     """The interrupt for each received packet."""
@@ -203,11 +201,11 @@ class TransferTime(DescriptionSection):
 class CustomTransport(DescriptionSection):
     """A transport that is described by measured transfer times."""
 
-    table: list[TransferTime] = Field(min_length=1)
+    table: list[TransferTime] = entry(min_length=1)
     """Transfer times by the length of messages; longer ones than in the last row cannot be sent."""
     framing: bool = False
     """Whether messages are framed as on serial lines."""
-    driver: Driver = Field(default_factory=Driver.model_construct)
+    driver: Driver = entry(default_factory=Driver.model_construct)
     """How the driver moves bytes."""
     interrupt: Interrupt | None = None
     """The interrupt for each received message."""
@@ -226,7 +224,7 @@ class AgentTime(Shorthand):
     mean: OffsetOrNumberZero | None = None
     """Mean time, in place of an unknown maximum: a simulation takes it for every message, and no bound follows from it."""
 
-    @model_validator(mode="after")
+    @examines
     def _is_complete_and_ordered(self) -> Self:
         if (self.max is None) == (self.mean is None):
             raise problem("expected either 'max' or, if it is unknown, 'mean'")
@@ -242,7 +240,7 @@ class Agent(DescriptionSection):
 
     name: Name = "Agent"
     """Its name."""
-    profile: Name | None = Field(default=None, examples=["pico2w-usb", "./my-agent.yaml"])
+    profile: Name | None = entry(default=None, examples=["pico2w-usb", "./my-agent.yaml"])
     """Measured times: a known profile (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or a file, e.g.
     `./my-agent.yaml`; what is stated beside it overrides them."""
     to_controller: AgentTime | None = None
@@ -262,7 +260,7 @@ def _not_too_long(bits: int) -> int:
 class TransportSection(DescriptionSection):
     """The transport between the controller and the agent: exactly one wire."""
 
-    profile: Name | None = Field(default=None, examples=["pico2w-usb", "./my-link.yaml"])
+    profile: Name | None = entry(default=None, examples=["pico2w-usb", "./my-link.yaml"])
     """The transport of a known profile of measured times (`pico2w-usb`, `ra6m5-can-fd`, `ra6m5-uart`, `ra6m5-udp` or `ra6m5-usb`), or
     of a file, e.g. `./my-link.yaml`; what is stated beside it overrides its values."""
     can: Can | None = None
@@ -288,7 +286,7 @@ class TransportSection(DescriptionSection):
     losses: LossesSection | None = None
     """How many messages are lost, as an assumption, e.g. `1 per 10 s` or `0.1 %`; default: unknown if `loses_messages`, else none."""
 
-    @model_validator(mode="after")
+    @examines
     def _loses_what_is_stated(self) -> Self:
         if self.losses is not None and self.states("loses_messages") and not self.loses_messages:
             raise problem("'losses' are stated, but 'loses_messages' is false")

@@ -7,11 +7,9 @@ from collections.abc import Callable, Iterable
 from math import isfinite
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import Field, WithJsonSchema
-from pydantic_core import PydanticCustomError
-
 from amalthea_uros import units
-from amalthea_uros.spec.validators import After, Before
+from amalthea_uros.spec.fields import After, Before, EditorSchema, Limits, Meanings
+from amalthea_uros.spec.type_checks import WrongValueError
 
 #: In characters.
 MAX_NAME_LENGTH = 200
@@ -20,15 +18,14 @@ _GREATEST_IDENTIFIER = 2**29 - 1
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
 
-def problem(message: str) -> PydanticCustomError:
-    """The exception that a validator raises for a wrong value."""
-    # Braces would be taken for placeholders.
-    return PydanticCustomError("value", message.replace("{", "{{").replace("}", "}}"))
+def problem(message: str) -> WrongValueError:
+    """The exception for a wrong value."""
+    return WrongValueError("value", message)
 
 
-def unexpected(message: str) -> PydanticCustomError:
-    """The exception that a validator raises for a wrong value, which the message is to show."""
-    return PydanticCustomError("unexpected", message)
+def unexpected(message: str) -> WrongValueError:
+    """The exception for a wrong value, which the message is to show."""
+    return WrongValueError("unexpected", message)
 
 
 def _quantity(parse: Callable[[str], Any], dimension: units.Dimension) -> Callable[[Any], Any]:
@@ -65,7 +62,7 @@ _ZERO_OR_MORE = r"(?!-[0.]*[1-9])[-+]?"
 _DIGITS = r"([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]{1,3})?"
 
 
-def _text_schema(dimension: units.Dimension, *, zero: bool = False, number_zero: bool = False) -> WithJsonSchema:
+def _text_schema(dimension: units.Dimension, *, zero: bool = False, number_zero: bool = False) -> EditorSchema:
     """How editors check a quantity.
 
     Parameters
@@ -86,19 +83,15 @@ def _text_schema(dimension: units.Dimension, *, zero: bool = False, number_zero:
     )
 
 
-def editor_schema(problem: str, **schema: Any) -> WithJsonSchema:
+def editor_schema(problem: str, **schema: Any) -> EditorSchema:
     """A JSON schema with the message that yaml-language-server shows for whatever does not match it."""
     with_pattern = {"patternErrorMessage": problem} if "pattern" in schema else {}
-    return WithJsonSchema({**schema, **with_pattern, "errorMessage": problem})
+    return EditorSchema({**schema, **with_pattern, "errorMessage": problem})
 
 
-def described(**meanings: str) -> Any:
+def described(**meanings: str) -> Meanings:
     """What editors say of each word of a choice; words with a hyphen are written with an underscore here."""
-
-    def add(schema: dict[str, Any]) -> None:
-        schema["markdownEnumDescriptions"] = [meanings[word.replace("-", "_")] for word in schema["enum"]]
-
-    return Field(json_schema_extra=add)
+    return Meanings(meanings)
 
 
 def _name(value: Any) -> Any:
@@ -178,7 +171,7 @@ SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, After(_not_negative), _tex
 #: A bit rate above zero, in bits per second.
 BitRate: TypeAlias = Annotated[int, _BIT_RATE, After(_positive), _text_schema(units.BIT_RATE)]
 #: Symbols per second of a serial line, as everybody writes it: without a unit.
-BaudRate: TypeAlias = Annotated[int, Field(strict=True, ge=300, le=100_000_000)]
+BaudRate: TypeAlias = Annotated[int, Limits(ge=300, le=100_000_000)]
 #: Name of an object.
 Name: TypeAlias = Annotated[
     str,
@@ -192,7 +185,7 @@ Name: TypeAlias = Annotated[
 Number: TypeAlias = Annotated[
     float,
     Before(_number),
-    Field(gt=0),
+    Limits(gt=0),
     editor_schema(
         "expected a number above zero such as 1.5",
         type=["number", "string"],
@@ -203,13 +196,13 @@ Number: TypeAlias = Annotated[
 #: Before a choice of whole numbers, for which `true` and "1" would do as well.
 WHOLE_NUMBER = Before(_whole_number)
 #: A number of things.
-Count: TypeAlias = Annotated[int, Field(strict=True, ge=1, le=1_000_000)]
+Count: TypeAlias = Annotated[int, Limits(ge=1, le=1_000_000)]
 #: A number of things, possibly zero.
-CountOrNone: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=1_000_000)]
+CountOrNone: TypeAlias = Annotated[int, Limits(ge=0, le=1_000_000)]
 #: A scheduling priority; a higher number is a higher priority.
-Priority: TypeAlias = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
+Priority: TypeAlias = Annotated[int, Limits(ge=0, le=2**31 - 1)]
 #: A number that a priority of a task can have in an operating system; threads of Zephyr that nothing preempts have negative ones.
-PriorityNumber: TypeAlias = Annotated[int, Field(strict=True, ge=-(2**31) + 1, le=2**31 - 1)]
+PriorityNumber: TypeAlias = Annotated[int, Limits(ge=-(2**31) + 1, le=2**31 - 1)]
 #: An identifier of CAN frames, of 11 or 29 bits: a whole number, or text such as "0x120".
 CanIdentifier: TypeAlias = Annotated[
     int,

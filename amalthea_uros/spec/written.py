@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, TypeAlias, get_args, get_origin
 
-from pydantic.fields import FieldInfo
-
-from amalthea_uros.spec.section import DescriptionSection, Shorthand
+from amalthea_uros.spec.section import DescriptionSection, SectionField, Shorthand
 from amalthea_uros.spec.values import quantity_text
 
 #: What a file can contain: text as it is read again, numbers, lists and mappings.
@@ -58,7 +56,7 @@ def _plain(section: DescriptionSection) -> Written | None:
     return first if all(each == first for each in others) else None
 
 
-def _marks(field: FieldInfo) -> Iterator[Any]:
+def _marks(field: SectionField) -> Iterator[Any]:
     """The marks of the type of a field."""
     yield from field.metadata
     for part in _parts(field.annotation):

@@ -17,7 +17,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.units import DataSize, Time
+from amalthea_uros.units import Time
 from amalthea_uros.uros.application.created_entities import SESSION, CreatedEntity, created_entities
 from amalthea_uros.uros.creation_traffic import CreationTraffic, creation_traffic, round_trip
 from amalthea_uros.uros.middleware.profile import Profile
@@ -85,7 +85,8 @@ def initialisation(
     else:
         least = max(0, cycles[0] - 1) * period
         most = None if cycles[1] is None else max(0, cycles[1] - 1) * period
-    sizes: dict[str, DataSize] = middleware.initialisation.request_sizes.model_dump(exclude_none=True)
+    stated_sizes = middleware.initialisation.request_sizes
+    sizes = {key: size for key in type(stated_sizes).model_fields if (size := getattr(stated_sizes, key)) is not None}
     return Initialisation(
         entities=entities,
         min_cycles=None if cycles is None else cycles[0],

@@ -34,9 +34,8 @@ HEAVY = {
 }
 MODELS = {"amalthea_uros.metamodel.classes", "amalthea_uros.xmi"}
 SYSTEMS = {"amalthea_uros.perf", "amalthea_uros.timing"}
-#: pydantic looks for plugins in the distributions that are installed.
-DESCRIPTIONS = {"pydantic", "yaml", "email", "socket", "importlib.metadata"}
-#: So do the rules of users; the settings of a project are TOML, the texts of rules YAML.
+DESCRIPTIONS = {"yaml"}
+#: Rules of users are looked for in the distributions that are installed; the settings of a project are TOML, the texts of rules YAML.
 RULES = {
     "yaml",
     "amalthea_uros.validate",

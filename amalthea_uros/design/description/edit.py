@@ -12,6 +12,7 @@ from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system
 from amalthea_uros.design.description import text_edits
 from amalthea_uros.design.description.places import Assignment, Places
+from amalthea_uros.design.description.texts import described
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter, Periodic
@@ -20,7 +21,6 @@ from amalthea_uros.timing.activation.releases import counters, first_time, nomin
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.described import describe_text
 
 #: An object and what is compared of it -> the value.
 Meaning: TypeAlias = Mapping[tuple[str, str], object]
@@ -159,7 +159,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
     structural = [change for change in changes if is_structural(change)]
     if structural:
         return _restructured(text, path, structural, [change for change in changes if not is_structural(change)])
-    before = describe_text(text, path)
+    before = described(text, path)
     expected = changed_system(before.assembly.system, changes, Settings())
     places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     assignments = [assignment for change in changes for assignment in places.assignments(change)]
@@ -184,7 +184,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
 
 def _restructured(text: str, path: Path, structural: Sequence[Change], values: Sequence[Change]) -> EditedDescription:
     """The text with changes for which there is no other way than a description, and then with other values of what it describes."""
-    before = describe_text(text, path)
+    before = described(text, path)
     places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
     assignments = [assignment for change in structural for assignment in places.assignments(change)]
     rebuilt = apply_assignments(text, assignments)
@@ -218,7 +218,7 @@ def value_edits(
 
 def _system(text: str, path: Path, changes: Sequence[Change]) -> System:
     try:
-        return describe_text(text, path).assembly.system
+        return described(text, path).assembly.system
     except ReadError as error:
         reasons = "; ".join(finding.message for finding in error.findings)
         what = ", ".join(map(str, changes))

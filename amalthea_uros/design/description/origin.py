@@ -16,11 +16,11 @@ from amalthea_uros.design.description.keys import DescriptionKey, keys_of, match
 from amalthea_uros.design.description.places import Assignment, Places
 from amalthea_uros.design.description.refusals import refusal
 from amalthea_uros.design.description.text_edits import rendered, value_text, with_value
+from amalthea_uros.design.description.texts import described
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.uros.described import Described, describe_text
 
 #: Keys that are changed in the system that is built, because it is an assumption about it which no description states.
 ASSUMED = ("communication", "arrival_jitter")
@@ -150,7 +150,7 @@ class DescriptionOrigin:
 
     def places(self) -> Places:
         """The keys that state values of objects that are built from the description."""
-        values = _described(self.text, self.path)
+        values = described(self.text, self.path)
         return Places(values.description, values.platform, values.core_types, values.assembly.priority_scale)
 
     def _of_built_object(self, change: Change) -> Sequence[Assignment]:
@@ -176,7 +176,7 @@ class DescriptionOrigin:
             raise InvalidArgumentError(f"a description with {what} is not valid: {reasons}") from None
 
     def _system(self, text: str) -> System:
-        assembly = _described(text, self.path).assembly
+        assembly = described(text, self.path).assembly
         with_bus = assembly.system_with_bus() if self.with_bus else None
         return with_bus or assembly.system
 
@@ -200,12 +200,6 @@ def _consequences(old: System, new: System, shown: dict[str, Difference]) -> lis
     ]
 
 
-@lru_cache(maxsize=8)
-def _described(text: str, path: Path) -> Described:
-    """The content of a text; searches ask for the same ones again."""
-    return describe_text(text, path)
-
-
 @lru_cache(maxsize=4)
 def _keys(text: str, path: Path) -> tuple[DescriptionKey, ...]:
-    return keys_of(_described(text, path).whole, text)
+    return keys_of(described(text, path).whole, text)

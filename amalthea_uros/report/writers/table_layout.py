@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from textwrap import wrap
 
@@ -46,7 +47,7 @@ class Footnotes:
 def column_widths(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> list[int]:
     """The width of each column; cells may have several lines."""
     columns = zip(headings, *cells, strict=True)
-    return [max(len(line) for cell in column for line in cell.split("\n")) for column in columns]
+    return [max(map(_longest, column)) for column in columns]
 
 
 def table_width(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> int:
@@ -60,18 +61,18 @@ def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]], widt
         GAP if name in _REMARKS else GAP + column for name, column in zip(headings, column_widths(headings, cells), strict=True)
     ]
     room = max(_SHORT, width - sum(others))
-    remarks = [cell for row in cells for heading, cell in zip(headings, row, strict=True) if heading in _REMARKS]
+    remarks = Counter(cell for row in cells for heading, cell in zip(headings, row, strict=True) if heading in _REMARKS)
 
     def shown(heading: str, cell: str) -> str:
-        is_long = len(cell) > _SHORT and (cell in notes or remarks.count(cell) >= _REPEATED)
+        is_long = len(cell) > _SHORT and (cell in notes or remarks[cell] >= _REPEATED)
         return notes.mark(cell) if heading in _REMARKS and (len(cell) > room or is_long) else cell
 
     return [[shown(heading, cell) for heading, cell in zip(headings, row, strict=True)] for row in cells]
 
 
 def _longest(cell: str) -> int:
-    """The longest line of a cell."""
-    return max(map(len, cell.split("\n")))
+    """The length of the longest line of a cell."""
+    return max(map(len, cell.split("\n"))) if "\n" in cell else len(cell)
 
 
 def folded_headings(headings: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> list[str]:
