@@ -45,9 +45,11 @@ def sent_again(
     models: dict[str, EventModel | None] = {}
     for wire in system.network.wires:
         messages = acknowledged_from_controller(wire.name, system)
-        if not losses_from_controller(wire) or not messages or why_unbounded(wire, system):
+        if not wire.losses or not messages or why_unbounded(wire, system):
             continue
         again = _again(wire, messages, age, processor, solved, reads_in_waits)
+        if again is not None and not losses_from_controller(wire):
+            continue
         names = {each.name for each in messages}
         acknowledging = (each.name for each in system.network.transmissions if each.acknowledges in names)
         models |= dict.fromkeys((*names, *acknowledging), again)

@@ -29,12 +29,7 @@ def publications(system: System) -> list[Publication]:
 
 def acknowledged_from_controller(wire: str, system: System) -> list[Transmission]:
     """The messages from the controller on a wire that the agent acknowledges."""
-    return [
-        each
-        for each in system.network.transmissions
-        if (each.wire, each.direction, each.purpose) == (wire, Direction.TO_AGENT, Purpose.DATA)
-        and _acknowledgement(each, system) is not None
-    ]
+    return [each for each in _data(wire, Direction.TO_AGENT, system) if _acknowledgement(each, system) is not None]
 
 
 def recovers(publication: Publication, system: System) -> bool:
@@ -52,11 +47,7 @@ def why_unbounded(wire: Wire, system: System) -> str:
     """
     sent = acknowledged_from_controller(wire.name, system)
     published = {each.transmission: each for each in publications(system)}
-    received = [
-        each
-        for each in system.network.transmissions
-        if (each.wire, each.direction, each.purpose) == (wire.name, Direction.TO_CONTROLLER, Purpose.DATA)
-    ]
+    received = _data(wire.name, Direction.TO_CONTROLLER, system)
     if any(not losses.window for losses in wire.losses):
         return "with a probability, any number of messages can be lost; state how many are in some time, e.g. '1 per 10 s'"
     recovery = wire.recovery
@@ -73,13 +64,20 @@ def why_unbounded(wire: Wire, system: System) -> str:
         return "a reliable message to the controller can wait for a missing one before it"
     if len(system.executors) != 1 or _has_threads(wire, system):
         return "several threads use the session"
-    if any(each.name not in published or not published[each.name].waits for each in sent):
+    if any(each.name not in published for each in _data(wire.name, Direction.TO_AGENT, system)):
+        return "more than one thread sends messages, or not each of them is a publication of an executor"
+    if any(not published[each.name].waits for each in sent):
         return "not each reliable message is a publication that waits"
     if any(publication.timeout is None for publication in published.values() if publication.waits):
         return "a publication waits without a timeout"
     if any(parts(reply, system) > 1 for each in sent if (reply := _acknowledgement(each, system)) is not None):
         return "a message is sent in several parts"
     return ""
+
+
+def _data(wire: str, direction: Direction, system: System) -> list[Transmission]:
+    wanted = wire, direction, Purpose.DATA
+    return [each for each in system.network.transmissions if (each.wire, each.direction, each.purpose) == wanted]
 
 
 def _acknowledgement(message: Transmission, system: System) -> Transmission | None:
