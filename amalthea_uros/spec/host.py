@@ -138,7 +138,7 @@ class HostTimer(HostCallbackSection):
 
 
 class HostServiceCallback(HostCallbackSection):
-    """What a service and a client of the host have in common."""
+    """Keys that services and clients of the host have."""
 
     service: Name
     """Name of the service."""
