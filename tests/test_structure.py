@@ -48,7 +48,7 @@ LINES = {
     "timing": 5524,
     "trace": 5057,
     "units": 200,
-    "uros": 6885,
+    "uros": 6892,
     "validate": 3629,
     "xmi": 8542,
 }
