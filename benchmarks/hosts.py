@@ -68,7 +68,9 @@ def main() -> None:
         system = large_host(callbacks)
         took = least_time(partial(analyze_system, system), options.repeat) / 1000
         known = sum(each.worst is not None for each in analyze_system(system).chains)
-        print(f"analysis of {callbacks} callbacks, {EXECUTORS} executors, {CORES} cores, {CHAINS} chains ({known} bounds): {took:.2f} s")
+        print(
+            f"analysis of {callbacks} callbacks, {EXECUTORS} executors, {CORES} cores, {CHAINS} chains ({known} bounds): {took:.2f} s"
+        )
         took = least_time(partial(simulate_system, system, Options(duration=SECOND)), 1) / 1000
         print(f"simulation of 1 s of {callbacks} callbacks: {took:.2f} s")
 

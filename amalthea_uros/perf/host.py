@@ -78,7 +78,7 @@ class HostCallback(Named):
     kind : a timer, a subscription, a service or a client
     execution : bounds of its execution time, without preemption
     period : of a timer
-    topic, depth : whose messages call it, and how many of them its queue keeps (KEEP_LAST); requests and responses of a service are messages
+    topic, depth : whose messages call it, and how many of them its queue keeps (KEEP_LAST); requests and responses are messages
     publishes : topics, at its end
     reads, writes : variables, at its start and at its end
     group : the callback group, unique in the host
@@ -112,7 +112,6 @@ class HostExecutor(Named):
     thread: HostThread = field(default_factory=HostThread)
     threads: int = 1
     callbacks: tuple[HostCallback, ...] = ()
-
 
     def rank(self, callback: HostCallback, release: RosRelease) -> int:
         """The place of the kind of a callback in a ready set (rclcpp `allocator_memory_strategy.hpp`, `wait_result.hpp`).

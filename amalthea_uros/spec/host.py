@@ -114,7 +114,7 @@ class HostCallbackSection(DescriptionSection):
     """Variables that it writes at its end."""
     publishes: list[Name] = entry(default_factory=list)
     """Topics that it publishes at its end."""
-    calls: list[Name] = Field(default_factory=list)
+    calls: list[Name] = entry(default_factory=list)
     """Services of the host that it calls at its end, without waiting for the response."""
     group: Name | None = None
     """Callback group of its node; default: that of the node itself, which is mutually exclusive."""
@@ -137,7 +137,7 @@ class HostTimer(HostCallbackSection):
 
 
 class HostServiceCallback(HostCallbackSection):
-    """What a service and a client of the host have in common."""
+    """Keys that services and clients of the host have."""
 
     service: Name
     """Name of the service."""
@@ -175,9 +175,9 @@ class HostNodeSection(DescriptionSection):
     """Its subscriptions."""
     timers: list[HostTimer] = entry(default_factory=list)
     """Its timers."""
-    services: list[HostService] = Field(default_factory=list)
+    services: list[HostService] = entry(default_factory=list)
     """Its services."""
-    clients: list[HostClient] = Field(default_factory=list)
+    clients: list[HostClient] = entry(default_factory=list)
     """Its clients."""
 
 

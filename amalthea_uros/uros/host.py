@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.host import (
     Host,
     HostCallback,
@@ -23,6 +22,7 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.uros.application.callbacks import interval_of_rate
 from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.host_callbacks import callbacks_of, kind_of, published_by, topic_of
 
 
 def host_of(description: Description, problems: Notes) -> Host:
@@ -57,14 +57,14 @@ class _HostBuilder:
         ):
             problems.unique(kind, ((each.name, each.location("name")) for each in items))
         problems.unique("topic", ((plain_topic(each.topic), each.location("topic")) for each in section.topics))
-        callbacks = [callback for node in section.nodes for callback in _callbacks(node)]
+        callbacks = [callback for node in section.nodes for callback in callbacks_of(node)]
         problems.unique("callback of the host", ((each.name, each.location("name")) for each in callbacks))
         executors = {executor.name for executor in section.executors}
         for node in section.nodes:
             if node.executor not in executors:
                 problems.undefined("executor of the host", node.executor, executors, node.location("executor"))
             groups = {group.name for group in node.groups}
-            for callback in _callbacks(node):
+            for callback in callbacks_of(node):
                 if callback.group is not None and callback.group not in groups:
                     problems.undefined(
                         "callback group", callback.group, groups, callback.location("group"), owner=f"node {node.name!r}"
@@ -79,7 +79,7 @@ class _HostBuilder:
         clients = [(node, each) for node in nodes for each in node.clients]
         problems.unique("service of the host", ((each.service, each.location("service")) for _, each in services))
         names = {each.service for _, each in services}
-        callers = [(node, each, service) for node in nodes for each in _callbacks(node) for service in each.calls]
+        callers = [(node, each, service) for node in nodes for each in callbacks_of(node) for service in each.calls]
         for _, caller, service in callers:
             if service not in names:
                 problems.undefined("service of the host", service, names, caller.location("calls"))
@@ -100,7 +100,9 @@ class _HostBuilder:
 
     def _check_sources(self, description: Description) -> None:
         """Report topics whose rate is stated although it follows from what publishes them."""
-        published = {plain_topic(topic) for node in self.section.nodes for each in _callbacks(node) for topic in each.publishes}
+        published = {
+            plain_topic(topic) for node in self.section.nodes for each in callbacks_of(node) for topic in each.publishes
+        }
         published |= {plain_topic(each.topic) for node in description.application.nodes for each in node.publishers}
         for topic in self.section.topics:
             if topic.rate is not None and plain_topic(topic.topic) in published:
@@ -138,15 +140,15 @@ class _HostBuilder:
 
     def _of_node(self, node: spec.HostNodeSection) -> Iterator[HostCallback]:
         reentrant = {group.name for group in node.groups if group.type == "reentrant"}
-        for section in _callbacks(node):
+        for section in callbacks_of(node):
             yield HostCallback(
                 name=section.name,
-                kind=_kind(section),
+                kind=kind_of(section),
                 execution=self._execution(section.execution_time),
                 period=section.period if isinstance(section, spec.HostTimer) else None,
-                topic=_topic_of(section),
+                topic=topic_of(section),
                 depth=10 if isinstance(section, spec.HostTimer) else section.depth,
-                publishes=tuple(_published(section)),
+                publishes=tuple(published_by(section)),
                 reads=tuple(section.reads),
                 writes=tuple(section.writes),
                 group=f"{node.name}/{section.group or ''}",
@@ -170,9 +172,9 @@ class _HostBuilder:
     def _topics(self) -> Iterator[HostTopic]:
         """The topics that are described, and those that only callbacks name."""
         stated = {plain_topic(each.topic): each for each in self.section.topics}
-        callbacks = [callback for node in self.section.nodes for callback in _callbacks(node)]
-        named = [topic for each in callbacks for topic in _published(each)]
-        named += [topic for each in callbacks if (topic := _topic_of(each)) is not None]
+        callbacks = [callback for node in self.section.nodes for callback in callbacks_of(node)]
+        named = [topic for each in callbacks for topic in published_by(each)]
+        named += [taken for each in callbacks if (taken := topic_of(each)) is not None]
         for name in dict.fromkeys((*stated, *named)):
             topic = stated.get(name)
             latency = topic.latency if topic is not None and topic.latency is not None else self.section.latency
@@ -183,47 +185,6 @@ class _HostBuilder:
                 jitter=(topic.jitter or 0) if topic is not None else 0,
                 origin=(topic or self.section).location(),
             )
-
-
-_Callback = spec.HostSubscription | spec.HostTimer | spec.HostService | spec.HostClient
-
-
-def _callbacks(node: spec.HostNodeSection) -> list[_Callback]:
-    """The callbacks of a node; kinds have an order of their own in a ready set anyway."""
-    return [*node.timers, *node.subscriptions, *node.services, *node.clients]
-
-
-def _kind(section: _Callback) -> HandleKind:
-    if isinstance(section, spec.HostTimer):
-        return HandleKind.TIMER
-    if isinstance(section, spec.HostService):
-        return HandleKind.SERVICE
-    return HandleKind.CLIENT if isinstance(section, spec.HostClient) else HandleKind.SUBSCRIPTION
-
-
-def _topic_of(section: _Callback) -> str | None:
-    """The topic whose messages call a callback; None of a timer."""
-    if isinstance(section, spec.HostService):
-        return _request(section.service)
-    if isinstance(section, spec.HostClient):
-        return _response(section.service)
-    return plain_topic(section.topic) if isinstance(section, spec.HostSubscription) else None
-
-
-def _published(section: _Callback) -> Iterator[str]:
-    """The topics that a callback publishes at its end, with its requests and its response."""
-    yield from map(plain_topic, section.publishes)
-    yield from map(_request, section.calls)
-    if isinstance(section, spec.HostService):
-        yield _response(section.service)
-
-
-def _request(service: str) -> str:
-    return f"{plain_topic(service)}/request"
-
-
-def _response(service: str) -> str:
-    return f"{plain_topic(service)}/response"
 
 
 def _thread(section: spec.ThreadSection) -> HostThread:

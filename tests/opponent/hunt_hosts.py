@@ -1,9 +1,10 @@
 """Looks for response times and latencies of random hosts that are beyond their bounds.
 
-`python -m opponent.hunt_hosts --seeds 0..10000 --jobs 2` with `tests` and `tools` on the path, e.g. `PYTHONPATH=.:tests:tools` in the folder of
-the project. Each seed is a random host with one kind of executor and a distribution for which it exists; it is analysed, and
-played tick by tick with several phases by players that share no code with the product. At the end it prints, for each kind and rules of distributions, the
-number of systems, the share of callbacks with a bound, and the median and the maximum of bound/observed, and each value beyond a bound with its seed.
+`python -m opponent.hunt_hosts --seeds 0..10000 --jobs 2` with `tests` and `tools` on the path, e.g. `PYTHONPATH=.:tests:tools` in the
+folder of the project. Each seed is a random host with one kind of executor and a distribution for which it exists; it is analysed, and
+played tick by tick with several phases by players that share no code with the product. It prints each value beyond a bound with
+its seed, and for each kind and rules of distributions the number of systems, the share of callbacks with a bound, and the median and
+the maximum of bound/observed.
 """
 
 from __future__ import annotations
@@ -63,7 +64,9 @@ def hunt(seed: int) -> Hunted:
     return _compared(Hunted(rules), system, paths, played, seed)
 
 
-def _of_one_thread(random: Random, kind: str, release: RosRelease) -> tuple[System, list[list[str]], Iterator[tuple[Times, Times]]]:
+def _of_one_thread(
+    random: Random, kind: str, release: RosRelease
+) -> tuple[System, list[list[str]], Iterator[tuple[Times, Times]]]:
     threads, sources, paths = random_threads(random, kind)
 
     def played() -> Iterator[tuple[Times, Times]]:
@@ -133,12 +136,12 @@ def main() -> None:
             ratios[found.rules] += found.ratios
             false += found.false
             for line in found.false:
-                print(line, flush=True)
+                print(line, flush=True)  # noqa: T201
             if number % 500 == 0 or number == end - first:
-                print(f"{number} systems, {len(false)} values beyond their bounds", flush=True)
+                print(f"{number} systems, {len(false)} values beyond their bounds", flush=True)  # noqa: T201
                 for rules, count in systems.items():
                     share, ratio = known[rules] / total[rules], ratios[rules]
-                    print(f"| {rules} | {count:,} | {share:.0%} | {median(ratio):.2f} ({max(ratio):.1f}) |", flush=True)
+                    print(f"| {rules} | {count:,} | {share:.0%} | {median(ratio):.2f} ({max(ratio):.1f}) |", flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":

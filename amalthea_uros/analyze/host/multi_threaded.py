@@ -2,7 +2,7 @@
 
 1. As if one thread had all the work. While a callback is pending, at least one thread executes: the last one that ends polls when all
    groups are free. So the bound for one thread and any order (`polled`) holds, and no callback starves, if all callbacks together need
-   less than one core. Messages overtake each other behind a reentrant callback: then only the end of the busy window is known.
+   less than one core. Messages overtake each other after a reentrant callback: then only the end of the busy window is known.
 2. As chains that share the threads (`reentrant`), if groups do not matter: reentrant ones, and those with callbacks of one chain
    only, of which one alone is pending at a time as long as each chain ends within its period.
 3. Group by group, if groups exclude each other and each has a thread of its own: whenever a group is free, a thread is, too, and the
@@ -47,12 +47,12 @@ def in_groups(executor: HostExecutor, tasks: Sequence[AnalysedTask]) -> dict[str
     groups: dict[str, list[AnalysedTask]] = {}
     for callback, task in zip(executor.callbacks, tasks, strict=True):
         groups.setdefault(callback.group, []).append(task)
-    found = {}
+    responses = {}
     for group in groups.values():
         for task in group:
             response = polled.response_time(task, [other for other in group if other is not task])
-            found[task.name] = replace(response, method=GROUP_METHOD)
-    return found
+            responses[task.name] = replace(response, method=GROUP_METHOD)
+    return responses
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,17 +83,17 @@ class SharedThreads:
         reasons, best = [], dict[str, Response]()
         for method in (self._as_one_thread, self._as_chains):
             try:
-                found = method()
+                responses = method()
             except UnknownError as error:
                 reasons.append(str(error))
                 continue
-            best = {name: min(best.get(name, each), each, key=_worst) for name, each in found.items()}
+            best = {name: min(best.get(name, each), each, key=_worst) for name, each in responses.items()}
         if not best:
             raise UnknownError("; ".join(reasons))
         return best
 
     def _as_one_thread(self) -> dict[str, Response]:
-        found = {}
+        responses = {}
         for task, route in zip(self.tasks, self.routes, strict=True):
             others = [other for other in self.tasks if other is not task]
             response = polled.response_time(task, others, self.preempting)
@@ -101,8 +101,8 @@ class SharedThreads:
                 raise UnknownError(f"as if one thread had all callbacks: {response.reason}")
             if any(each.is_reentrant for each in route[:-1]):
                 response = replace(response, worst=response.window)
-            found[task.name] = replace(response, method=METHOD)
-        return found
+            responses[task.name] = replace(response, method=METHOD)
+        return responses
 
     def _as_chains(self) -> dict[str, Response]:
         if self.cores < self.executor.threads:
@@ -115,12 +115,12 @@ class SharedThreads:
             raise UnknownError(
                 f"callbacks of the group {group!r} can starve, as other chains of it exclude them, and not each group has a thread"
             )
-        chains, found = [self._chain(route) for route in ends], dict[str, Response]()
+        chains, responses = [self._chain(route) for route in ends], dict[str, Response]()
         for route, response in zip(ends, reentrant.latencies(chains, self.executor.threads), strict=True):
             if response.worst is None:
                 raise UnknownError(response.reason)
-            found |= {callback.name: response for callback in route}
-        return found
+            responses |= {callback.name: response for callback in route}
+        return responses
 
     def _shared_groups(self, ends: Sequence[Route]) -> Iterator[str]:
         """The groups of which callbacks of different chains exclude each other."""

@@ -91,8 +91,8 @@ class HostReleases:
 
     def _greatest(self, executor: HostExecutor) -> Time:
         """The greatest latency of the callbacks of an executor so far."""
-        found = (self.latencies.get(callback.name) for callback in executor.callbacks)
-        return max((each.worst or 0 for each in found if each is not None), default=0)
+        latencies = (self.latencies.get(callback.name) for callback in executor.callbacks)
+        return max((each.worst or 0 for each in latencies if each is not None), default=0)
 
     def _state(self) -> dict[str, Time | str | None]:
         return {**{name: each.worst for name, each in self.latencies.items()}, **self.reasons}
@@ -120,9 +120,9 @@ class HostReleases:
             routes = [self.topics.route(callback) for callback in executor.callbacks]
             self.latencies |= SharedThreads(executor, cores, routes, tasks, self.preempting(executor)).latencies()
             return
-        found = in_groups(executor, tasks)
-        self.latencies |= found
-        for response in found.values():
+        responses = in_groups(executor, tasks)
+        self.latencies |= responses
+        for response in responses.values():
             if response.worst is None:
                 raise UnknownError(response.reason)
 
