@@ -43,7 +43,7 @@ LINES = {
     "report": 8295,
     "services": 2402,
     "simulate": 8570,
-    "source": 2715,
+    "source": 2970,
     "spec": 2498,
     "timing": 5524,
     "trace": 5057,

@@ -20,7 +20,6 @@ FLAWS = {
     "int32_publisher.c": {"IMP008", "IMP012"},
     "let_and_trigger.c": {"IMP014", "IMP021", "IMP022"},
     "multi_io.c": {"IMP006", "IMP011", "IMP012", "IMP013"},
-    "parameter_server.c": {"IMP004"},
     "ping_pong.c": {"IMP012", "IMP021"},
     "reconnection.ino": {"IMP013", "IMP018"},
     "two_executors.cpp": {"IMP023"},
