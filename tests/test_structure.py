@@ -18,7 +18,7 @@ from support import ROOT
 LINES = {
     "__init__": 257,
     "__main__": 3,
-    "_internal": 927,
+    "_internal": 1045,
     "_version": 1,
     "am": 2,
     "analyze": 8575,
@@ -44,7 +44,7 @@ LINES = {
     "services": 2402,
     "simulate": 8570,
     "source": 2970,
-    "spec": 2498,
+    "spec": 2600,
     "timing": 5524,
     "trace": 5057,
     "units": 200,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from amalthea_uros._internal.message_types import MessageType
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.source.arrays import member_of
 from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeEntityKind
-from amalthea_uros.source.messages import MessageType
 from amalthea_uros.source.scope import Expression, called
 from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall

@@ -5,9 +5,9 @@ from __future__ import annotations
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros._internal.message_types import MessageType
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location
-from amalthea_uros.source.messages import MessageType
 from amalthea_uros.source.program import CodeFunction
 from amalthea_uros.units import Time
 
