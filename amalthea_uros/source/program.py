@@ -114,8 +114,8 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
 def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
     if node.type in ("declaration", "field_declaration"):
         _note_objects(program, file, node)
-        for name, size in declared_sizes(node).items():
-            program.arrays[name].add(size)
+        for array, size in declared_sizes(node).items():
+            program.arrays[array].add(size)
     match node.type:
         case "new_expression" | "template_function":
             _note_made(program, file, node)

@@ -96,10 +96,6 @@ class Subscription(TypedMessage, MessageCallback):
 
     topic: Name
     """Topic that it subscribes to."""
-    type: TypeName | None = None
-    """Type of its messages, e.g. `std_msgs/msg/Int32`."""
-    bounds: BoundsSection | None = None
-    """Longest strings and sequences of a message, where the type does not bound them."""
     message_size: Size
     """Size of the longest message, without headers; default: that of the type, if it is a common one."""
     jitter: Duration | None = None
@@ -133,10 +129,6 @@ class Publisher(TypedMessage):
 
     topic: Name
     """Topic that it publishes to."""
-    type: TypeName | None = None
-    """Type of its messages, e.g. `std_msgs/msg/Int32`."""
-    bounds: BoundsSection | None = None
-    """Longest strings and sequences of a message, where the type does not bound them."""
     message_size: Size
     """Size of the longest message, without headers; default: that of the type, if it is a common one."""
     reliability: Reliability = "reliable"

@@ -54,6 +54,11 @@ class TypedMessage(DescriptionSection):
 
     sizes: ClassVar[Mapping[str, str]] = {"message_size": ""}
 
+    type: TypeName | None = None
+    """Type of its messages, e.g. `std_msgs/msg/Int32`."""
+    bounds: BoundsSection | None = None
+    """Longest strings and sequences of a message, where the type does not bound them."""
+
     @model_validator(mode="before")
     @classmethod
     def _with_sizes(cls, value: Any) -> Any:
