@@ -92,7 +92,7 @@ def length_of(
 
 
 def unbounded_parts(kind: MessageType, own: Mapping[str, str] = MappingProxyType({})) -> tuple[str, ...]:
-    """What a type has without an end: `string`, `sequence`, both or nothing; nothing of a type that is not known."""
+    """The parts of a type without an end: `string`, `sequence`, both or nothing; nothing of a type that is not known."""
 
     def most(**bounds: int) -> int | None:
         length = length_of(kind, own, LengthBounds(**bounds))

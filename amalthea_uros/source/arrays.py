@@ -15,7 +15,7 @@ _TEMPLATES = ("array",)
 
 def declared_sizes(node: Node) -> dict[str, str]:
     """The arrays that a declaration declares -> the expressions of their lengths; "" for those that follow from a list."""
-    found: dict[str, str] = {}
+    sizes: dict[str, str] = {}
     kind = node.child_by_field_name("type")
     length = _template_length(kind) if kind is not None else None
     for declarator in node.children_by_field_name("declarator"):
@@ -28,8 +28,8 @@ def declared_sizes(node: Node) -> dict[str, str]:
                 outermost = text_of(size) if size is not None else ""
             inner = inner.child_by_field_name("declarator") or next(iter(inner.named_children), None)
         if inner is not None and outermost is not None:
-            found[text_of(inner)] = outermost
-    return found
+            sizes[text_of(inner)] = outermost
+    return sizes
 
 
 def _template_length(kind: Node) -> str | None:
@@ -42,7 +42,7 @@ def _template_length(kind: Node) -> str | None:
 
 
 def elements_of(values: Node) -> list[Node]:
-    """The elements of a list; one more pair of braces around all of them is none of their own."""
+    """The elements of a list; one more pair of braces around all of them does not count."""
     elements = [child for child in values.named_children if child.type != "comment"]
     if len(elements) == 1 and elements[0].type == "initializer_list" and values.parent is not None:
         inner = [child for child in elements[0].named_children if child.type != "comment"]
@@ -83,7 +83,7 @@ def counted_array(node: Node) -> Node | None:
 
 
 def _sized(node: Node) -> Node | None:
-    """What `sizeof` is applied to."""
+    """The operand of `sizeof`."""
     if node.type != "sizeof_expression":
         return None
     inner: Node | None = node.child_by_field_name("value")

@@ -81,7 +81,7 @@ class CodeProgram:
     changed: set[str] = field(default_factory=set)
 
     def number_of_objects(self, owner: str, depth: int = 0) -> int:
-        """How many objects of a class there are, as members of others, too; 0 if nothing shows one."""
+        """How many objects of a class there are, as members, too; 0 if nothing shows one."""
         if depth > _MAX_DEPTH:
             return 0
         return sum(

@@ -70,7 +70,7 @@ class Expression:
         return own._returned() if node.type == "call_expression" else own
 
     def _returned(self) -> Expression:
-        """What a function of the sources returns, if it does nothing else, or returns only what lives on; else the call."""
+        """The value that a function returns, if it does nothing else, or the address of a variable that stays; else the call."""
         name, arguments = called(self.node)
         functions = self.program.functions.get(name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], ())
         if len(functions) != 1 or self.depth > _MAX_DEPTH:

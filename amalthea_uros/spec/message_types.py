@@ -45,7 +45,7 @@ class BoundsSection(DescriptionSection):
 
 
 class TypedMessage(DescriptionSection):
-    """What has messages of a type, from which their sizes follow if they are not stated.
+    """A section with messages of a type, from which their sizes follow if they are not stated.
 
     Attributes
     ----------
@@ -69,8 +69,8 @@ class TypedMessage(DescriptionSection):
         stated = given if isinstance(given, dict) else {}
         # What is no number is reported where it is.
         bounds = LengthBounds(**{part: _count(stated[part]) for part in LengthBounds._fields if part in stated})
-        found = {key: _size(kind, part, value.get(key), bounds) for key, part in cls.sizes.items()}
-        return value | {key: size for key, size in found.items() if size is not None}
+        derived = {key: _size(kind, part, value.get(key), bounds) for key, part in cls.sizes.items()}
+        return value | {key: size for key, size in derived.items() if size is not None}
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:

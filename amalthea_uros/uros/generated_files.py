@@ -45,7 +45,7 @@ def generated_storage(assembly: Assembly) -> MessageStorage | None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeWishes(Brief):
-    """What the code is to do besides what the description says.
+    """The wishes for the code beyond the description.
 
     Attributes
     ----------

@@ -48,7 +48,7 @@ class CodeThread(Brief):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FirmwareCode(Brief):
-    """What the templates show.
+    """The content of the templates.
 
     Attributes
     ----------

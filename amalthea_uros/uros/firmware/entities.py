@@ -1,4 +1,4 @@
-"""What the code creates: publishers and what executors wait for, with their types and the memory of their messages."""
+"""The entities that the code creates, with their types and the memory of their messages."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class CodePublisher(Brief):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeHandler(Brief):
-    """What an executor waits for, and what the application does then.
+    """An entity that an executor waits for, and the reaction of the application.
 
     Attributes
     ----------
@@ -133,14 +133,14 @@ class CodeEntities:
                 self._clients[node.name, name] = self._handler(node, section)
         self.handlers: dict[str, list[CodeHandler]] = {}
         for executor in executors:
-            found = self.handlers.setdefault(executor.name, [])
+            created = self.handlers.setdefault(executor.name, [])
             for handle in executor.handles:
                 if handle.name in sections:
                     node, section = sections[handle.name]
                     own = self._clients.get((node.name, handle.name)) or self._handler(node, section)
-                    found.append(own)
-                elif not any(each.kind == "parameter_server" for each in found):
-                    found.append(self._server(nodes, handle.name))
+                    created.append(own)
+                elif not any(each.kind == "parameter_server" for each in created):
+                    created.append(self._server(nodes, handle.name))
 
     @property
     def messages(self) -> list[CodeMessage]:
@@ -150,7 +150,7 @@ class CodeEntities:
 
     @property
     def every_handler(self) -> list[CodeHandler]:
-        """What all executors wait for."""
+        """The entities that executors wait for."""
         return [each for group in self.handlers.values() for each in group]
 
     def _publisher(self, node: NodeSection, section: Publisher) -> CodePublisher:
@@ -163,12 +163,12 @@ class CodeEntities:
         keys = type(section).sizes
         stated, bounds = section.type, section.bounds
         own = MessageType(*stated.split("/")) if stated is not None else self._stand_in(section, name, kind)
-        found = []
+        created = []
         for part in keys.values():
             whole = own.part(part) if part else own
             length = length_of(whole) if stated is not None else None
             given = {each: getattr(bounds, each) or 0 for each in _MEMORY} if bounds is not None else dict.fromkeys(_MEMORY, 0)
-            found.append(
+            created.append(
                 CodeMessage(
                     variable=self.names.of("message", name, part),
                     type=whole,
@@ -178,7 +178,7 @@ class CodeEntities:
                     sequence=given["sequence"],
                 )
             )
-        return tuple(found)
+        return tuple(created)
 
     def _stand_in(self, section: TypedMessage, name: str, kind: str) -> MessageType:
         words = re.findall(r"[A-Za-z0-9]+", name)
@@ -219,8 +219,8 @@ class CodeEntities:
         )
 
     def _of_topic(self, topic: str, node: NodeSection) -> CodePublisher | None:
-        found = [each for each in self.publishers if each.section.topic == topic]
-        return next((each for each in found if each.node == self.nodes[node.name]), found[0] if found else None)
+        created = [each for each in self.publishers if each.section.topic == topic]
+        return next((each for each in created if each.node == self.nodes[node.name]), created[0] if created else None)
 
     def _server(self, nodes: Sequence[NodeSection], handle: str) -> CodeHandler:
         node = next(each for each in nodes if each.parameter_server is not None)

@@ -17,7 +17,7 @@ class CodePort(Brief):
 
     Attributes
     ----------
-    headers : that it needs, by which it can also be told
+    headers : that it needs, which also identify it
     sleep, wait : how a thread sleeps, and waits without sleeping; `{ms}` and `{us}` are the time; "" if it cannot
     threads : how threads are started: `freertos`, `zephyr`, or "" for one in `main`
     entry : `main`, or `arduino` for `setup` and `loop`

@@ -9,14 +9,14 @@ from amalthea_uros.uros.firmware.entities import CodeHandler, CodeMessage
 
 
 def parameters(handler: CodeHandler) -> str:
-    """What a function gets: its message, and the messages that it fills in."""
+    """The parameters of a function: its message, and the messages that it fills in."""
     listed = [f"{kind} * {message.variable}" for kind, message in _inputs(handler)]
     listed += [f"{message.c_type} * {message.variable}" for message in _outputs(handler)]
     return ", ".join(listed) or "void"
 
 
 def arguments(handler: CodeHandler) -> str:
-    """What its callback gives it."""
+    """The arguments in its callback."""
     received = ["request", "response"] if handler.kind == "service" else ["response" if handler.kind == "client" else "message"]
     given = [f"({kind} *) {name}" for (kind, _), name in zip(_inputs(handler), received, strict=False)]
     return ", ".join([*given, *(f"&{message.variable}" for message in _outputs(handler))])
