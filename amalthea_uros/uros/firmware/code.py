@@ -16,7 +16,7 @@ from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.units import SECOND, Time
 from amalthea_uros.uros.firmware.entities import CodeEntities, CodeMessage, open_types
-from amalthea_uros.uros.firmware.loops import RULE, loop_lines, nanoseconds, without_code
+from amalthea_uros.uros.firmware.loops import loop_lines, nanoseconds, without_code
 from amalthea_uros.uros.firmware.ports import CodePort, code_port, waiting
 from amalthea_uros.uros.firmware.signatures import arguments, parameters, quality
 
@@ -153,7 +153,7 @@ def _problems(nodes: Sequence[NodeSection]) -> Iterator[Finding]:
                 yield without_code(f"no code is written for {kind} of {node.name!r}", section.location())
     for section, kind in open_types(nodes):
         message = f"{kind} has no longest string or sequence: nothing can give it memory"
-        yield Finding(RULE, Severity.ERROR, message, section.location(), "State 'bounds'.")
+        yield Finding("GEN010", Severity.ERROR, message, section.location(), "State 'bounds'.")
 
 
 def header_of(message: CodeMessage) -> str:

@@ -15,12 +15,9 @@ from amalthea_uros.uros.firmware.ports import CodePort, waiting
 _NANOSECOND, _MILLISECOND = 10**3, 10**9
 
 
-RULE = "GEN010"
-
-
 def without_code(message: str, location: Location | None) -> Finding:
     """Something in a description that has no code."""
-    return Finding(RULE, Severity.ERROR, message, location, "Generate without --code, or change the description.")
+    return Finding("GEN010", Severity.ERROR, message, location, "Generate without --code, or change the description.")
 
 
 def loop_lines(
