@@ -66,7 +66,11 @@ def test_the_pools_of_zephyr_are_in_its_configuration(tmp_path):
 
 
 def test_zephyr_implies_its_port(tmp_path):
-    text = APP.format(port="none", ros="humble").replace("  port: none\n", "").replace("hardware:", "os: {rtos: zephyr}\nhardware:")
+    text = (
+        APP.format(port="none", ros="humble")
+        .replace("  port: none\n", "")
+        .replace("hardware:", "os: {rtos: zephyr}\nhardware:")
+    )
     (tmp_path / "app.yaml").write_text(text)
     result = generate(tmp_path / "app.yaml")
     assert result.assembly.description.middleware.port == "zephyr"
