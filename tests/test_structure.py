@@ -18,7 +18,7 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 927,
+    "_internal": 1045,
     "_version": 1,
     "am": 2,
     "analyze": 8681,
@@ -43,12 +43,12 @@ LINES = {
     "report": 8299,
     "services": 2460,
     "simulate": 8584,
-    "source": 2715,
+    "source": 2970,
     "spec": 2859,
     "timing": 5606,
     "trace": 5057,
     "units": 206,
-    "uros": 6892,
+    "uros": 7330,
     "validate": 3660,
     "xmi": 8542,
 }

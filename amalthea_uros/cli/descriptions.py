@@ -147,16 +147,30 @@ def build(
 )
 @click.option("--check", "meta", type=INPUT, metavar="COLCON.META", help="Write nothing; compare this file with APP.YAML.")
 @_platform_option
+@click.option("--code", is_flag=True, help="Write the C of entities, executors, loops and threads, too.")
+@click.option("--reconnect", is_flag=True, help="Let this code create everything anew when the agent comes back.")
+@click.option("--stamps", is_flag=True, help="Let this code send a CAN frame where a callback starts and where it ends.")
 @click.option("--force", is_flag=True, help="Also replace files that amuros generate did not write.")
 @output_option("GenerateResult")
 def generate(
-    description: Path, folder: Path | None, meta: Path | None, platform: str | None, force: bool, outputs: tuple[Output, ...]
+    description: Path,
+    folder: Path | None,
+    meta: Path | None,
+    platform: str | None,
+    code: bool,
+    reconnect: bool,
+    stamps: bool,
+    force: bool,
+    outputs: tuple[Output, ...],
 ) -> None:
     """Write build options for the firmware: the smallest static pools that hold.
 
     Files: colcon.meta, or zenoh_options.cmake, and amuros_limits.h, with which the compiler checks the library. With --check, the
     options of a colcon.meta are compared with what APP.YAML needs: too small, larger than necessary, misspelled, without effect.
     Then the exit code is 1 if there are errors or warnings.
+
+    With --code, or --reconnect or --stamps, amuros_app.c has everything of micro-ROS: nodes, entities, executors, loops and threads.
+    The application defines what callbacks do. `amuros measure LOG --markers amuros.markers.yml` reads the frames of --stamps.
     """
     from amalthea_uros.services import generate as service
 
@@ -168,7 +182,8 @@ def generate(
         check = service.check_colcon_meta(description, meta, platform)
         show_result(check, outputs)
         sys.exit(0 if check.is_fine else 1)
-    show_result(service.generate(description, folder, platform, force), outputs)
+    result = service.generate(description, folder, platform, force, code=code, reconnect=reconnect, stamps=stamps)
+    show_result(result, outputs)
 
 
 @click.command("schema")

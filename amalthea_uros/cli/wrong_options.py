@@ -23,7 +23,10 @@ _INSTEAD = {
 _OF_OTHERS = {
     ("analyze", "--duration"): "only amuros simulate and report have a duration; an analysis covers all times",
     ("analyze", "--list"): "write --keys, or --matching TEXT, for the values that --set can change",
-    ("optimize", "--set"): "write --offer OBJECT.KEY=VALUES, or write the changed file first: amuros analyze MODEL --set ... -o FILE",
+    (
+        "optimize",
+        "--set",
+    ): "write --offer OBJECT.KEY=VALUES, or write the changed file first: amuros analyze MODEL --set ... -o FILE",
     ("optimize", "--sweep"): "write --offer OBJECT.KEY=VALUES",
     ("sweep", "--offer"): "write --sweep OBJECT.KEY=VALUES",
     ("sweep", "--vary"): "write --sweep OBJECT.KEY=VALUES",

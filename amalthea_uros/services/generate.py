@@ -21,7 +21,7 @@ from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
 from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
-from amalthea_uros.uros.generated_files import MARK, generated_memory, generated_storage, texts_of
+from amalthea_uros.uros.generated_files import MARK, CodeWishes, generated_memory, generated_storage, texts_of
 from amalthea_uros.uros.generated_options import check_meta
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.memory_findings import exceeded_memory
@@ -74,7 +74,16 @@ class MetaCheck(Brief, Shown):
         return all(finding.severity is Severity.INFO for finding in self.findings)
 
 
-def generate(path: StrPath, folder: StrPath | None = None, platform: str | None = None, force: bool = False) -> GenerateResult:
+def generate(
+    path: StrPath,
+    folder: StrPath | None = None,
+    platform: str | None = None,
+    force: bool = False,
+    *,
+    code: bool = False,
+    reconnect: bool = False,
+    stamps: bool = False,
+) -> GenerateResult:
     """The files for the build of an `app.yaml`: `colcon.meta` with the smallest pools that hold, and `amuros_limits.h`.
 
     Parameters
@@ -82,6 +91,9 @@ def generate(path: StrPath, folder: StrPath | None = None, platform: str | None 
     folder : where they are written; it is created if it does not exist; None: nowhere
     platform : replaces the platform that the file names
     force : replace files that somebody else wrote
+    code : write the C of entities, executors, loops and threads, too, with definitions of types that are not stated
+    reconnect : with `code`, a loop that creates everything anew when the agent comes back
+    stamps : with `code`, a CAN frame where each callback starts and ends, and the markers with which `measure` reads them
 
     Raises
     ------
@@ -94,7 +106,8 @@ def generate(path: StrPath, folder: StrPath | None = None, platform: str | None 
         raise ReadError([Finding("GEN009", Severity.ERROR, message, Location(Path(path)), advice)])
     assembly = with_analysed_storage(assembly)
     target = None if folder is None else Path(folder)
-    texts = texts_of(assembly)
+    wishes = CodeWishes(reconnects=reconnect, stamps=stamps) if code or reconnect or stamps else None
+    texts = texts_of(assembly, wishes)
     result = GenerateResult(
         description=Path(path), folder=target, assembly=assembly, texts=texts, memory=generated_memory(assembly)
     )

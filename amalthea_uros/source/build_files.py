@@ -46,7 +46,7 @@ def build_facts(files: Iterable[SourceFile]) -> BuildFacts:
         match file.path.name:
             case "platformio.ini":
                 _platformio(facts, file)
-            case "prj.conf":
+            case "prj.conf" | "amuros.conf":
                 _zephyr(facts, dict(_settings(file, "")))
             case "sdkconfig" | "sdkconfig.defaults":
                 _espidf(facts, dict(_settings(file, "")))

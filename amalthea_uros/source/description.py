@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from amalthea_uros._internal.message_types import Length, LengthBounds, MessageType, length_of, unbounded_parts
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.source.boards import platform_of_board
 from amalthea_uros.source.facts import (
@@ -21,7 +22,6 @@ from amalthea_uros.source.facts import (
     SpinKind,
     Thread,
 )
-from amalthea_uros.source.messages import MessageType, length_of
 from amalthea_uros.source.names import CodeNames
 from amalthea_uros.units import SECOND, Time, time_text
 
@@ -37,6 +37,12 @@ _LISTS = {
     CodeEntityKind.ACTION_SERVER: "action_servers",
     CodeEntityKind.ACTION_CLIENT: "action_clients",
 }
+#: What a description takes for a type; others are comments.
+_TYPE = re.compile(r"[a-z]\w*/(msg|srv|action)/[A-Z]\w*", re.ASCII)
+#: Keys of sizes -> the parts of the type.
+_MESSAGE: Mapping[str, str] = {"message_size": ""}
+_SERVICE: Mapping[str, str] = {"request_size": "Request", "response_size": "Response"}
+_ACTION: Mapping[str, str] = {"goal_size": "Goal", "result_size": "Result", "feedback_size": "Feedback"}
 _ON, _OFF = ("on", "1", "true"), ("off", "0", "false")
 _NOT_ARRIVING = (CodeEntityKind.TIMER, CodeEntityKind.GUARD_CONDITION)
 
@@ -289,21 +295,39 @@ def _node(node: CodeEntity, is_first: bool, facts: CodeFacts, names: CodeNames) 
 
 def _publisher(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
     yield f"topic: {quoted(entity.name) if entity.name else GAP}{_at(entity.place)}"
-    yield _size("message_size", entity.type, facts)
+    yield from _sizes(entity.type, _MESSAGE, facts)
     yield f"reliability: {entity.reliability or GAP}"
 
 
-def _size(key: str, kind: MessageType | None, facts: CodeFacts) -> str:
-    if kind is None:
-        return f"{key}: {GAP}"
-    length = length_of(kind, facts.types)
-    if length is None:
-        return f"{key}: {GAP}{_at(None, str(kind))}"
+def _sizes(kind: MessageType | None, parts: Mapping[str, str], facts: CodeFacts) -> Iterator[str]:
+    """The type of messages, and of their sizes what does not follow from it.
+
+    Parameters
+    ----------
+    parts : keys of the sizes -> the parts of the type
+    """
+    if kind is None or _TYPE.fullmatch(str(kind)) is None:
+        yield from (f"{key}: {GAP}{_at(None, str(kind or ''))}" for key in parts)
+        return
+    types = {key: kind.part(suffix) if suffix else kind for key, suffix in parts.items()}
+    lengths = {key: length_of(each, facts.types) for key, each in types.items()}
+    common = {key: length for key, length in lengths.items() if length is not None and length == length_of(types[key])}
+    yield f"type: {kind}{remark(' and '.join(map(_length, lengths.values())) if None not in lengths.values() else '')}"
+    for key, length in lengths.items():
+        if key not in common:
+            is_known = length is not None and length.most is not None
+            yield f"{key}: {f'{length.most} B' if is_known and length is not None else GAP}"
+    open_parts = {part for key in common for part in unbounded_parts(types[key])}
+    if open_parts:
+        yield f"bounds: {{{', '.join(f'{part}: {GAP}' for part in LengthBounds._fields if part in open_parts)}}}"
+
+
+def _length(length: Length | None) -> str:
+    if length is None or length.is_fixed:
+        return "" if length is None else f"{length.bytes} B"
     if length.most is None:
-        return f"{key}: {GAP}{_at(None, f'{kind}: {length.bytes} B with empty strings and sequences')}"
-    return (
-        f"{key}: {length.most} B{_at(None, str(kind) if length.is_fixed else f'{kind} with the longest strings and sequences')}"
-    )
+        return f"{length.bytes} B with empty strings and sequences"
+    return f"{length.most} B with the longest strings and sequences"
 
 
 def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: CodeFacts, names: CodeNames) -> Iterator[str]:
@@ -326,18 +350,16 @@ def _content(entity: CodeEntity, facts: CodeFacts) -> Iterator[str]:
     match entity.kind:
         case CodeEntityKind.SUBSCRIPTION:
             yield f"topic: {named}{_at(entity.place)}"
-            yield _size("message_size", entity.type, facts)
+            yield from _sizes(entity.type, _MESSAGE, facts)
             yield f"reliability: {entity.reliability or GAP}"
         case CodeEntityKind.SERVICE | CodeEntityKind.CLIENT:
             if entity.kind is CodeEntityKind.CLIENT:
                 yield f"service: {named}{_at(entity.place)}"
-            for key, suffix in (("request_size", "Request"), ("response_size", "Response")):
-                yield _size(key, entity.type.part(suffix) if entity.type is not None else None, facts)
+            yield from _sizes(entity.type, _SERVICE, facts)
         case CodeEntityKind.ACTION_SERVER | CodeEntityKind.ACTION_CLIENT:
             if entity.kind is CodeEntityKind.ACTION_CLIENT:
                 yield f"action: {named}{_at(entity.place)}"
-            for suffix in ("Goal", "Result", "Feedback"):
-                yield _size(f"{suffix.lower()}_size", entity.type.part(suffix) if entity.type is not None else None, facts)
+            yield from _sizes(entity.type, _ACTION, facts)
 
 
 def _outputs(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, names: CodeNames) -> Iterator[str]:

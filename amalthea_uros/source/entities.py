@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from amalthea_uros._internal.message_types import MessageType
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.source.arrays import member_of
 from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeEntityKind
-from amalthea_uros.source.messages import MessageType
 from amalthea_uros.source.scope import Expression, called
 from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
@@ -25,6 +26,11 @@ _PROFILES = {
     "rmw_qos_profile_services_default": RELIABLE,
     "rmw_qos_profile_parameters": RELIABLE,
     "rmw_qos_profile_sensor_data": BEST_EFFORT,
+}
+#: Policies of profiles: ros2/rmw rmw/include/rmw/types.h.
+_POLICIES = {
+    "RMW_QOS_POLICY_RELIABILITY_RELIABLE": RELIABLE,
+    "RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT": BEST_EFFORT,
 }
 _NANOSECOND = 1000
 
@@ -133,7 +139,14 @@ def _reliability(call: FunctionCall, quality: str | None) -> str | None:
     if quality != _BY_PROFILE:
         return quality
     profile = call.argument(4)
-    return _PROFILES.get(profile.resolved.name) if profile is not None else None
+    if profile is None:
+        return None
+    assigned = profile.program.assigned.get(f"{profile.core.text}.reliability", set())
+    own = member_of(profile.resolved.node, "reliability", ())
+    stated = {*assigned, *([text_of(own)] if own is not None else [])}
+    if stated:
+        return _POLICIES.get(next(iter(stated))) if len(stated) == 1 else None
+    return _PROFILES.get(profile.resolved.name)
 
 
 def _options(call: FunctionCall) -> tuple[tuple[str, bool], ...]:

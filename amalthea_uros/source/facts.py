@@ -5,9 +5,9 @@ from __future__ import annotations
 from enum import StrEnum
 from fractions import Fraction
 
+from amalthea_uros._internal.message_types import MessageType
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location
-from amalthea_uros.source.messages import MessageType
 from amalthea_uros.source.program import CodeFunction
 from amalthea_uros.units import Time
 
@@ -43,6 +43,7 @@ class CodeEntity:
     period : of a timer; None if it is not constant
     callback : key of the function that a timer calls
     options : of a parameter server: names with their value
+    is_created : whether a function that is understood creates it; else it is only known that it is added to an executor
     """
 
     kind: CodeEntityKind
@@ -56,6 +57,7 @@ class CodeEntity:
     period: Time | None = None
     callback: CodeCallback | None = None
     options: tuple[tuple[str, bool], ...] = ()
+    is_created: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,7 +20,11 @@ META = ".meta"
 #: Files that define messages and services of an application: `package/msg/Name.msg`.
 INTERFACES = (".msg", ".srv", ".action", ".idl")
 #: Files of build systems that say something about the controller, by their names.
-BUILD_FILES = ("sdkconfig", "sdkconfig.defaults", "platformio.ini", "prj.conf", "CMakeLists.txt", "library.properties")
+BUILD_FILES = (
+    *("sdkconfig", "sdkconfig.defaults", "platformio.ini", "prj.conf", "CMakeLists.txt", "library.properties"),
+    # Beside prj.conf, as amuros generate writes it.
+    "amuros.conf",
+)
 
 
 @dataclass(frozen=True, slots=True)

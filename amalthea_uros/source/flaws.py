@@ -19,7 +19,8 @@ from amalthea_uros.units import Time, time_text
 
 _MILLISECOND = 10**9
 _SECOND = 10**12
-_WITH_HANDLES = (
+#: What an executor needs a handle for, besides servers of parameters and lifecycles.
+WITH_HANDLES = (
     CodeEntityKind.SUBSCRIPTION,
     CodeEntityKind.TIMER,
     CodeEntityKind.SERVICE,
@@ -88,7 +89,7 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
 def _never_called(facts: CodeFacts) -> Iterator[Finding]:
     added = {handle.entity for executor in facts.executors.values() for handle in executor.handles}
     for entity in facts.entities.values():
-        if entity.kind in _WITH_HANDLES and entity.key not in added:
+        if entity.kind in WITH_HANDLES and entity.key not in added:
             message = f"the {entity.kind} '{entity.variable}' is never added to an executor, so its callback never runs"
             yield Finding("IMP017", Severity.WARNING, message, entity.place, "Add it to an executor, or remove it.")
     for executor in facts.executors.values():
@@ -102,9 +103,10 @@ def _never_called(facts: CodeFacts) -> Iterator[Finding]:
                 "Give the file that calls a function such as rclc_executor_spin_some.",
             )
         for handle in executor.handles:
-            if handle.kind in _WITH_HANDLES and handle.entity not in facts.entities:
+            if handle.kind in WITH_HANDLES and not facts.entities[handle.entity].is_created:
                 message = f"the {handle.kind} that is added here is not created by a function that is understood"
-                yield Finding("IMP017", Severity.WARNING, message, handle.place, "Add it to the description by hand.")
+                advice = "Complete it in the description, and add the others that a loop adds here."
+                yield Finding("IMP017", Severity.WARNING, message, handle.place, advice)
 
 
 def _handles(executor: CodeExecutor, facts: CodeFacts) -> Iterator[Finding]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from amalthea_uros._internal.message_types import length_of
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import BEST_EFFORT
 from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeFacts, CodeHandle
-from amalthea_uros.source.messages import length_of
 from amalthea_uros.source.program import CodeProgram
 
 #: The MTU if nobody sets another one, and what an XRCE message has besides the data of a best-effort publication at least:

@@ -29,6 +29,8 @@ _CMSIS_PRIORITIES = {
     "osPriorityHigh": 40,
     "osPriorityRealtime": 48,
 }
+#: The first version, of which FreeRTOS gets the distance to the lowest one: STM32Cube Middlewares, CMSIS_RTOS/cmsis_os.c.
+_FIRST_CMSIS_PRIORITIES = {name: number for number, name in enumerate(_CMSIS_PRIORITIES)}
 
 
 class _ThreadForm(NamedTuple):
@@ -48,6 +50,7 @@ FORMS: Mapping[str, _ThreadForm] = {
     "xTaskCreateStatic": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
     "xTaskCreatePinnedToCore": _ThreadForm(0, 1, 2, 4, 6, rtos="freertos"),
     "osThreadNew": _ThreadForm(0, attributes=2, rtos="freertos"),
+    "osThreadDef": _ThreadForm(1, 0, 4, 2, rtos="freertos"),
     "K_THREAD_DEFINE": _ThreadForm(2, 0, 1, 6, rtos="zephyr"),
     "k_thread_create": _ThreadForm(3, 0, 2, 7, rtos="zephyr"),
     "pthread_create": _ThreadForm(2, 0),
@@ -71,14 +74,19 @@ def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | No
         attributes.get(key) or (call.argument(index) if index is not None else None)
         for key, index in (("name", form.name), ("stack_size", form.stack), ("priority", form.priority), ("core", form.core))
     )
-    factor = _WORD if in_words and call.name in ("xTaskCreate", "xTaskCreateStatic") else 1
+    factor = _WORD if in_words and call.name in ("xTaskCreate", "xTaskCreateStatic", "osThreadDef") else 1
     size = stack.number if stack is not None else None
     return Thread(
-        name=(name.string or (name.name if form.rtos != "freertos" else None) if name is not None else None) or callback.name,
+        name=(
+            name.string or (name.name if form.rtos != "freertos" or call.name == "osThreadDef" else None)
+            if name is not None
+            else None
+        )
+        or callback.name,
         entry=callback.function,
         place=call.place,
         stack=size * factor if size is not None and size > 0 else None,
-        priority=_priority(priority),
+        priority=_priority(priority, _FIRST_CMSIS_PRIORITIES if call.name == "osThreadDef" else _CMSIS_PRIORITIES),
         core=core.number if core is not None else None,
     )
 
@@ -95,11 +103,11 @@ def _attributes(given: Expression | None) -> dict[str, Expression]:
     return found
 
 
-def _priority(given: Expression | None) -> int | None:
+def _priority(given: Expression | None, named: Mapping[str, int]) -> int | None:
     if given is None:
         return None
-    if given.resolved.name in _CMSIS_PRIORITIES:
-        return _CMSIS_PRIORITIES[given.resolved.name]
+    if given.resolved.name in named:
+        return named[given.resolved.name]
     number = given.number
     return number if number is not None and number >= 0 else None
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.source.arrays import declared_sizes
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.syntax import descendants, parse, text_of
 
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
 
 _CLASSES = ("class_specifier", "struct_specifier")
 _NESTED = ("pointer_declarator", "array_declarator", "reference_declarator", "parenthesized_declarator", "init_declarator")
+#: Classes that are members of each other.
+_MAX_DEPTH = 20
+#: Functions of C++ that make an object of the class between their brackets.
+_MAKERS = ("make_unique", "make_shared")
 _CHANGES = ("assignment_expression", "update_expression")
 
 
@@ -51,8 +56,12 @@ class CodeProgram:
     macros : texts of macros without parameters, and of enumerators without a value; with several ones the value is unknown
     function_macros : those with parameters, with the texts
     functions : by name; several of one name in different files or classes
-    members : of classes
-    objects : of each class, the variables that are one of it; an array counts as several
+    members : of classes, in their order
+    objects : of each class, the places where one of it comes into being, and the class whose member it is, "" for none; an array
+        has two
+    classes : of variables and members that are objects, or lead to one; "" where several have this name
+    arrays : expressions of their lengths, by name; "" if that follows from the list that they are initialised with
+    assigned : what is assigned to members, by their texts, such as `quality.reliability`
     statics : names that are known in one file only, with its path
     values : what variables are initialised with, by their keys
     changed : names that something assigns to, or whose address is taken: what they are initialised with may not be their value
@@ -62,11 +71,23 @@ class CodeProgram:
     macros: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     function_macros: dict[str, tuple[SourceFile, Node]] = field(default_factory=dict)
     functions: dict[str, list[CodeFunction]] = field(default_factory=lambda: defaultdict(list))
-    members: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    objects: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    members: dict[str, dict[str, None]] = field(default_factory=lambda: defaultdict(dict))
+    objects: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
+    classes: dict[str, str] = field(default_factory=dict)
+    arrays: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    assigned: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     statics: set[tuple[str, str]] = field(default_factory=set)
     values: dict[str, tuple[Node, CodeFunction | SourceFile]] = field(default_factory=dict)
     changed: set[str] = field(default_factory=set)
+
+    def number_of_objects(self, owner: str, depth: int = 0) -> int:
+        """How many objects of a class there are, as members, too; 0 if nothing shows one."""
+        if depth > _MAX_DEPTH:
+            return 0
+        return sum(
+            max(1, self.number_of_objects(around, depth + 1)) if around else 1
+            for around in self.objects.get(owner, {}).values()
+        )
 
     def every_function(self) -> Iterator[CodeFunction]:
         """All functions."""
@@ -93,7 +114,11 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
 def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
     if node.type in ("declaration", "field_declaration"):
         _note_objects(program, file, node)
+        for array, size in declared_sizes(node).items():
+            program.arrays[array].add(size)
     match node.type:
+        case "new_expression" | "template_function":
+            _note_made(program, file, node)
         case "preproc_def":
             name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
             if name is not None:
@@ -108,7 +133,7 @@ def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
                 _note_variables(program, file, node)
         case "field_declaration":
             owner = _class_around(node)
-            program.members[owner].update(text_of(name) for name, _ in declared(node))
+            program.members[owner] |= dict.fromkeys(text_of(name) for name, _ in declared(node))
         case "enumerator":
             name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
             if name is not None and value is not None:
@@ -167,11 +192,26 @@ def _note_objects(program: CodeProgram, file: SourceFile, node: Node) -> None:
     if kind is None or kind.type not in ("type_identifier", "qualified_identifier", *_CLASSES):
         return
     name = text_of(kind.child_by_field_name("name") or kind).rpartition("::")[2]
+    for variable, _ in declared(node):
+        known = program.classes.setdefault(text_of(variable), name)
+        program.classes[text_of(variable)] = name if known == name else ""
+    around = _class_around(node)
     for declarator in node.children_by_field_name("declarator"):
-        if "pointer_declarator" not in {each.type for each in descendants(declarator)}:
+        types = {each.type for each in descendants(declarator)}
+        if not types & {"pointer_declarator", "reference_declarator", "function_declarator"}:
             place = f"{file.path}:{declarator.start_byte}"
-            is_array = any(each.type == "array_declarator" for each in descendants(declarator))
-            program.objects[name] |= {place, f"{place}[]"} if is_array else {place}
+            program.objects[name] |= {place: around} | ({f"{place}[]": around} if "array_declarator" in types else {})
+
+
+def _note_made(program: CodeProgram, file: SourceFile, node: Node) -> None:
+    """Objects that are made while the program runs."""
+    kind = node.child_by_field_name("type")
+    if node.type == "template_function":
+        name, arguments = node.child_by_field_name("name"), node.child_by_field_name("arguments")
+        given = arguments.named_children[:1] if arguments is not None else []
+        kind = given[0] if given and name is not None and text_of(name) in _MAKERS else None
+    if kind is not None:
+        program.objects[text_of(kind).rpartition("::")[2]][f"{file.path}:{node.start_byte}"] = _class_around(node)
 
 
 def _note_variables(program: CodeProgram, file: SourceFile, node: Node) -> None:
@@ -187,6 +227,9 @@ def _note_variables(program: CodeProgram, file: SourceFile, node: Node) -> None:
 
 def _note_change(program: CodeProgram, node: Node) -> None:
     target = node.child_by_field_name("left") or node.child_by_field_name("argument")
+    value = node.child_by_field_name("right")
+    if target is not None and target.type == "field_expression" and value is not None:
+        program.assigned[text_of(target)].add(text_of(value))
     if target is not None:
         program.changed.add(text_of(target).rpartition(".")[2].rpartition(">")[2])
 
@@ -205,6 +248,8 @@ def declared(node: Node) -> Iterator[tuple[Node, Node | None]]:
 def _class_around(node: Node) -> str:
     around = _enclosing(node, _CLASSES)
     name = around.child_by_field_name("name") if around is not None else None
+    if name is None and around is not None and around.parent is not None and around.parent.type == "type_definition":
+        name = around.parent.child_by_field_name("declarator")
     return text_of(name) if name is not None else ""
 
 

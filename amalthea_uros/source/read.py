@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from amalthea_uros._internal.ports import parameter_services
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.boards import platform_of_board, pools_of_board
 from amalthea_uros.source.build_files import BuildFacts, build_facts
@@ -12,7 +13,7 @@ from amalthea_uros.source.entities import CREATIONS, entity_of
 from amalthea_uros.source.executors import ACTIONS, SPINS, executor_of
 from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
-from amalthea_uros.source.flaws import flaws, not_understood
+from amalthea_uros.source.flaws import WITH_HANDLES, flaws, not_understood
 from amalthea_uros.source.loops import SENDS, add_senders, add_spins
 from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.messages import defined_types
@@ -25,6 +26,10 @@ from amalthea_uros.source.walk import CodeWalk, FunctionCall
 _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
 #: How the entry of a program can be called; two of one name are two programs.
 _ENTRIES = ("main", "app_main", "appMain", "setup")
+#: rclc_parameter/include/rclc_parameter/rclc_parameter.h of ros2/rclc; by the distribution.
+_SERVER_HANDLES = "RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES"
+#: A place in an array that is not constant.
+_OPEN = re.compile(r"\[(?!\d+\])[^\]]*\]")
 _OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
@@ -41,9 +46,11 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     ReadError : the parsers are not installed.
     """
     program = read_program(sources.code)
+    facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
+    if not program.macros[_SERVER_HANDLES]:
+        program.macros[_SERVER_HANDLES].add(str(parameter_services(build.ros.value if build.ros is not None else None)))
     walk = CodeWalk(program, _NAMES)
     walk.all()
-    facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program), *build.findings]
     facts.ros, facts.board, facts.clock = build.ros, build.board, build.clock
     facts.findings += _other_board(board, build)
@@ -82,12 +89,22 @@ def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
     # All executors first: functions that are called later can come earlier in the files.
     _act(facts, walk, {"rclc_executor_init"})
     _act(facts, walk, ACTIONS.keys() - {"rclc_executor_init"})
+    for executor in facts.executors.values():
+        for handle in executor.handles:
+            if handle.kind in WITH_HANDLES and handle.entity not in facts.entities:
+                variable = re.sub(r"\W+", "_", handle.entity.rpartition(":")[2]).strip("_")
+                facts.entities[handle.entity] = CodeEntity(
+                    kind=handle.kind, key=handle.entity, variable=variable, place=handle.place, is_created=False
+                )
 
 
 def _of_each_object(call: FunctionCall, entity: CodeEntity, program: CodeProgram) -> list[Finding]:
     """An entity of each object of a class, where the code does not show which object it is."""
+    if call.loops and _OPEN.search(entity.key) is not None:
+        message = f"'{entity.variable}' is created in a loop of unknown length; the description has it once"
+        return [Finding("IMP003", Severity.WARNING, message, call.place, "Add the other ones to the description by hand.")]
     owner = call.function.owner if call.function is not None else ""
-    number = len(program.objects.get(owner, ()))
+    number = program.number_of_objects(owner)
     if not owner or number < 2 or not entity.key.startswith(f"{owner}::"):
         return []
     message = f"'{entity.variable}' is created for each of {number} objects of '{owner}', which the description has once"

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.source.arrays import counted_array, elements_of, member_of
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram
-from amalthea_uros.source.syntax import parse_expression, text_of
+from amalthea_uros.source.syntax import descendants, parse_expression, text_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -69,17 +70,30 @@ class Expression:
         return own._returned() if node.type == "call_expression" else own
 
     def _returned(self) -> Expression:
-        """The value that a function of the sources returns, if it does nothing else; else the call."""
+        """The value that a function returns, if it does nothing else, or the address of a variable that stays; else the call."""
         name, arguments = called(self.node)
         functions = self.program.functions.get(name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], ())
         if len(functions) != 1 or self.depth > _MAX_DEPTH:
             return self
         function = functions[0]
         statements = [child for child in function.body.named_children if child.type != "comment"]
-        if len(statements) != 1 or statements[0].type != "return_statement" or not statements[0].named_children:
+        returns = [each for each in descendants(function.body) if each.type == "return_statement"]
+        if len(returns) != 1 or statements[-1:] != returns or not returns[0].named_children:
+            return self
+        given = text_of(returns[0].named_children[0])
+        if len(statements) > 1 and (not given.startswith("&") or given[1:].strip() in function.locals):
             return self
         bindings: dict[str, Binding] = dict(zip(function.parameters, map(self.at, arguments), strict=False))
-        value = statements[0].named_children[0]
+        called_as = self.node.child_by_field_name("function")
+        if (
+            called_as is not None
+            and (holder := called_as.child_by_field_name("argument")) is not None
+            and holder.type != "this"
+        ):
+            bindings[THIS] = self.at(holder)
+        elif THIS in self.bindings:
+            bindings[THIS] = self.bindings[THIS]
+        value = returns[0].named_children[0]
         return Expression(self.program, value, function.file, function, bindings, self.depth + 1).core
 
     @property
@@ -91,17 +105,54 @@ class Expression:
         node = own.node
         if node.type == "identifier":
             return own._key_of_name(text_of(node))
+        if node.type == "qualified_identifier":
+            around, _, name = own.text.rpartition("::")
+            owner = around.rpartition("::")[2]
+            return f"{owner}::{name}" if name in self.program.members.get(owner, ()) else own._key_of_name(name)
         if node.type == "field_expression":
             holder, member = node.child_by_field_name("argument"), node.child_by_field_name("field")
             if holder is not None and member is not None:
                 if holder.type == "this":
                     return own._key_of_name(text_of(member))
+                if owner := own.at(holder)._only_class(text_of(member)):
+                    return f"{owner}::{text_of(member)}"
                 return f"{own.at(holder).key}.{text_of(member)}"
         if node.type == "subscript_expression" and (array := node.child_by_field_name("argument")) is not None:
             index = own._index()
             number = index.number if index is not None else None
             return f"{own.at(array).key}[{number if number is not None else index.text if index is not None else ''}]"
         return own.text
+
+    @property
+    def owner(self) -> str:
+        """The class of the object that it is; "" if that is unknown."""
+        own = self.core
+        if own.depth > _MAX_DEPTH:
+            return ""
+        if own.node.type == "this":
+            return own.function.owner if own.function is not None else ""
+        bound = own.bindings.get(own.text) if own.node.type == "identifier" else None
+        if isinstance(bound, Expression):
+            return bound.owner
+        if own.node.type == "subscript_expression":
+            element = own._element()
+            if element is not None and element.node.type != "initializer_list":
+                return element.owner
+            array = own.node.child_by_field_name("argument")
+            return own.at(array).owner if array is not None else ""
+        return self.program.classes.get(own.text.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], "")
+
+    def _only_class(self, member: str) -> str:
+        """The class that a variable is the only object of, if it has a member, which methods call by its name; else ""."""
+        own = self.core
+        if own.node.type != "identifier" or own.depth > _MAX_DEPTH:
+            return ""
+        bound = own.bindings.get(text_of(own.node))
+        if isinstance(bound, Expression):
+            return bound._only_class(member)
+        owner = self.program.classes.get(text_of(own.node), "")
+        is_only = owner and member in self.program.members.get(owner, ()) and self.program.number_of_objects(owner) < 2
+        return owner if is_only else ""
 
     def _index(self) -> Expression | None:
         node = self.node.child_by_field_name("index") or self.node.child_by_field_name("indices")
@@ -115,17 +166,31 @@ class Expression:
             return bound.key
         if self.function is not None:
             if name in self.function.locals:
-                return self.function.scope + name
+                return self._pointed(self.function.scope + name, name)
             if name in self.program.members.get(self.function.owner, ()) and self.function.owner:
                 return f"{self._holder}.{name}" if self._holder else f"{self.function.owner}::{name}"
-        return f"{self.file.path}:{name}" if (str(self.file.path), name) in self.program.statics else name
+        return self._pointed(f"{self.file.path}:{name}" if (str(self.file.path), name) in self.program.statics else name, name)
+
+    def _pointed(self, key: str, name: str) -> str:
+        """The key of what a pointer or reference leads to from its declaration on, if it is one, and nothing changes it."""
+        node, place = self.program.values.get(key, (None, None))
+        if node is None or place is None or name in self.program.changed or self.depth > _MAX_DEPTH:
+            return key
+        if node.type not in ("pointer_expression", "call_expression") or (
+            node.type == "pointer_expression" and not text_of(node).startswith("&")
+        ):
+            return key
+        function, file = (place, place.file) if isinstance(place, CodeFunction) else (None, place)
+        bindings = self.bindings if function is self.function else {}
+        target = Expression(self.program, node, file, function, bindings, self.depth + 1)
+        return target.key if target.core.node.type != "call_expression" else key
 
     @property
     def _holder(self) -> str:
         """The key of the object whose method it is in; "" if its class has one object only, or if that is unknown."""
         owner = self.function.owner if self.function is not None else ""
         holder = self.bindings.get(THIS)
-        return holder.key if isinstance(holder, Expression) and len(self.program.objects.get(owner, ())) > 1 else ""
+        return holder.key if isinstance(holder, Expression) and self.program.number_of_objects(owner) > 1 else ""
 
     @property
     def name(self) -> str:
@@ -146,6 +211,8 @@ class Expression:
         own = self.core
         if own.node.type == "subscript_expression" and own.depth <= _MAX_DEPTH:
             return own._element() or own
+        if own.node.type == "field_expression" and own.depth <= _MAX_DEPTH and (member := own._member()) is not None:
+            return member
         if own.node.type not in ("identifier", "field_expression", "qualified_identifier") or own.depth > _MAX_DEPTH:
             return own
         name = text_of(own.node)
@@ -171,10 +238,45 @@ class Expression:
         if array is None or index is None:
             return None
         values, number = self.at(array).resolved, index.number
-        elements = [child for child in values.node.named_children if child.type != "comment"]
+        elements = elements_of(values.node)
         if values.node.type != "initializer_list" or number is None or not 0 <= number < len(elements):
             return None
         return values.at(elements[number]).resolved
+
+    def _member(self) -> Expression | None:
+        """The member of a structure that is initialised with a list, and to which nothing assigns a value."""
+        holder, field = self.node.child_by_field_name("argument"), self.node.child_by_field_name("field")
+        if holder is None or field is None or text_of(field) in self.program.changed or holder.type == "this":
+            return None
+        values = self.at(holder).resolved
+        if values.node.type != "initializer_list":
+            return None
+        base = self.at(holder).core
+        while base.node.type == "subscript_expression" and (array := base.node.child_by_field_name("argument")) is not None:
+            base = base.at(array).core
+        order = tuple(self.program.members.get(self.program.classes.get(base.name, ""), ()))
+        value = member_of(values.node, text_of(field), order)
+        return values.at(value).resolved if value is not None else None
+
+    @property
+    def length(self) -> int | None:
+        """The number of elements of the array that it is; None if it is none, or that is not constant."""
+        own = self.core
+        if own.node.type not in ("identifier", "field_expression", "qualified_identifier") or own.depth > _MAX_DEPTH:
+            return None
+        name = own.text.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
+        bound = own.bindings.get(name)
+        if isinstance(bound, Expression):
+            return bound.length
+        sizes = self.program.arrays.get(name, set())
+        if len(sizes) != 1:
+            return None
+        size = next(iter(sizes))
+        if size:
+            parsed = parse_expression(size)
+            return own.at(parsed).number if parsed is not None else None
+        values = own.resolved.node
+        return len(elements_of(values)) if values.type == "initializer_list" else None
 
     @property
     def string(self) -> str | None:
@@ -208,6 +310,8 @@ class Expression:
         if node.type == "unary_expression" and (inner := node.child_by_field_name("argument")) is not None:
             value = own.at(inner).number
             return None if value is None else {"-": -value, "+": value}.get(text_of(node.children[0]))
+        if node.type in ("binary_expression", "call_expression") and (array := counted_array(node)) is not None:
+            return own.at(array).length
         if node.type == "binary_expression":
             return own._operation()
         if node.type == "call_expression":

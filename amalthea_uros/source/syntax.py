@@ -50,9 +50,9 @@ def parse(file: SourceFile) -> Node:
     return _parser(file.is_c).parse(file.text).root_node
 
 
-def parse_expression(text: str) -> Node | None:
+def parse_expression(text: str, is_c: bool = True) -> Node | None:
     """The syntax tree of an expression, e.g. of the text of a macro; None if it is none."""
-    root = _parser(True).parse(f"int x = {text}\n;".encode()).root_node
+    root = _parser(is_c).parse(f"int x = {text}\n;".encode()).root_node
     if root.has_error or root.named_child_count != 1 or (declaration := root.named_child(0)) is None:
         return None
     declarator = declaration.child_by_field_name("declarator")

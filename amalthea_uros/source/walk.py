@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.limits import SOURCE_NODES
@@ -11,7 +11,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of
 from amalthea_uros.source.scope import THIS, Binding, Expression, called
-from amalthea_uros.source.syntax import branches, descendants, is_conditional, location_of, text_of
+from amalthea_uros.source.syntax import branches, descendants, is_conditional, location_of, parse_expression, text_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -106,6 +106,8 @@ class CodeWalk:
         self.findings: list[Finding] = []
         self._left = SOURCE_NODES
         self._entries = _MAX_ENTRIES
+        self._names = names
+        self._started: list[CodeFunction] = []
         self._relevant = relevant_functions(program, names)
 
     def all(self) -> None:
@@ -117,6 +119,9 @@ class CodeWalk:
         for function in self.program.every_function():
             if function.name not in self._relevant.called and function in self._relevant.functions:
                 self.function(function)
+        # Lambdas that are the code of threads; what they call is called by others only there.
+        while self._started:
+            self.function(self._started.pop(0))
 
     def _is_inactive(self, function: CodeFunction) -> bool:
         path, position = str(function.file.path), function.body.start_byte
@@ -201,7 +206,7 @@ class CodeWalk:
             # The usual form of a macro, or of a block that `break` leaves.
             self._visit(body, context)
             return
-        counted = self._iterations(node, context)
+        counted = self._elements(node, context) if node.type == "for_range_loop" else self._iterations(node, context)
         if counted is not None:
             name, values = counted
             for value in values:
@@ -209,7 +214,20 @@ class CodeWalk:
         else:
             self._visit(body, replace(context, loops=(*context.loops, _mark(node, context))))
 
-    def _iterations(self, node: Node, context: _WalkPosition) -> tuple[str, range] | None:
+    def _elements(self, node: Node, context: _WalkPosition) -> tuple[str, Sequence[Binding]] | None:
+        """The variable of a loop over an array, and the elements."""
+        declarator, array = node.child_by_field_name("declarator"), node.child_by_field_name("right")
+        while declarator is not None and declarator.type != "identifier":
+            declarator = next(iter(declarator.named_children), None)
+        if declarator is None or array is None:
+            return None
+        length = self._expression(array, context).length
+        if length is None or length > _MAX_ITERATIONS:
+            return None
+        elements = [parse_expression(f"{text_of(array)}[{index}]", is_c=False) for index in range(length)]
+        return text_of(declarator), [self._expression(each, context) for each in elements if each is not None]
+
+    def _iterations(self, node: Node, context: _WalkPosition) -> tuple[str, Sequence[Binding]] | None:
         """The counter of a loop that counts up from one constant to another, and its values."""
         start, condition, update = (node.child_by_field_name(name) for name in ("initializer", "condition", "update"))
         if start is None or condition is None or update is None or condition.type != "binary_expression":
@@ -254,12 +272,14 @@ class CodeWalk:
         name, arguments = called(node)
         for argument in arguments:
             self._visit(argument, context)
-        callee = self._callee(name, context)
+        callee = self._callee(name, node, context)
         expressions = tuple(self._expression(argument, context) for argument in arguments)
         if callee is not None:
             if callee not in context.stack and callee in self._relevant.functions:
                 self._enter(callee, expressions, self._holder(node, callee, context), context)
             return
+        if name in self._names:
+            self._started += [self.lambdas[text] for given in arguments if (text := text_of(given)) in self.lambdas]
         plain = name.removeprefix("::").removeprefix("std::").rpartition("this->")[2]
         self.calls.append(
             FunctionCall(
@@ -275,13 +295,19 @@ class CodeWalk:
             )
         )
 
-    def _callee(self, name: str, context: _WalkPosition) -> CodeFunction | None:
-        """The function of the sources that is called: in the same class, else the same file, else the only one."""
+    def _callee(self, name: str, node: Node, context: _WalkPosition) -> CodeFunction | None:
+        """The function of the sources that is called: of the object's class, else the same class or file, else the only one."""
+        function = node.child_by_field_name("function")
+        given = function.child_by_field_name("argument") if function is not None else None
+        called_class = (
+            self._expression(given, context).owner if given is not None else name.rpartition("::")[0].rpartition("::")[2]
+        )
         short = name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
         found = self.program.functions.get(short, [])
         owner = context.function.owner if context.function is not None else ""
         for close in (
-            [each for each in found if each.owner and each.owner == owner],
+            [each for each in found if each.owner and each.owner == called_class],
+            [each for each in found if each.owner and each.owner == owner and given is None],
             [each for each in found if each.file is context.file],
             found,
         ):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.fields import Examples, Limits, entry
+from amalthea_uros.spec.message_types import BoundsSection, TypedMessage, TypeName
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import Count, Duration, Name, Offset, Priority, Rate, Size, described
@@ -88,13 +90,13 @@ class MessageCallback(CallbackSection):
     """What happens to messages beyond `depth`."""
 
 
-class Subscription(MessageCallback):
+class Subscription(TypedMessage, MessageCallback):
     """A subscription with its callback."""
 
     topic: Name
     """Topic that it subscribes to."""
     message_size: Size
-    """Size of a message, without headers."""
+    """Size of the longest message, without headers; default: that of the type, if it is a common one."""
     jitter: Duration | None = None
     """Maximum delay of a message against its nominal time, shorter than `interval`; default: messages arrive regularly."""
     invocation: Annotated[Literal["on-new-data", "always"], _INVOCATIONS] = "on-new-data"
@@ -121,29 +123,41 @@ class Timer(CallbackSection):
     """Rate of the timer; the reciprocal of `period`."""
 
 
-class Publisher(DescriptionSection):
+class Publisher(TypedMessage):
     """A publisher that callbacks of the node send messages with."""
 
     topic: Name
     """Topic that it publishes to."""
     message_size: Size
-    """Size of a message, without headers."""
+    """Size of the longest message, without headers; default: that of the type, if it is a common one."""
     reliability: Reliability = "reliable"
     """Quality of service."""
 
 
-class ServiceSection(MessageCallback):
+class ServiceSection(TypedMessage, MessageCallback):
     """A service server; its callback answers requests."""
 
+    sizes: ClassVar[Mapping[str, str]] = {"request_size": "Request", "response_size": "Response"}
+
+    type: TypeName | None = None
+    """Type of the service, e.g. `std_srvs/srv/SetBool`."""
+    bounds: BoundsSection | None = None
+    """Longest strings and sequences of requests and responses, where the type does not bound them."""
     request_size: Size
     """Size of a request, without headers."""
     response_size: Size
     """Size of a response, without headers."""
 
 
-class Client(MessageCallback):
+class Client(TypedMessage, MessageCallback):
     """A service client; its callback receives the responses."""
 
+    sizes: ClassVar[Mapping[str, str]] = {"request_size": "Request", "response_size": "Response"}
+
+    type: TypeName | None = None
+    """Type of the service, e.g. `std_srvs/srv/SetBool`."""
+    bounds: BoundsSection | None = None
+    """Longest strings and sequences of requests and responses, where the type does not bound them."""
     service: Name
     """Service that it sends requests to."""
     request_size: Size
@@ -152,9 +166,15 @@ class Client(MessageCallback):
     """Size of a response, without headers."""
 
 
-class ActionServer(MessageCallback):
+class ActionServer(TypedMessage, MessageCallback):
     """An action server: three services and a timer of the middleware behind one handle."""
 
+    sizes: ClassVar[Mapping[str, str]] = {"goal_size": "Goal", "result_size": "Result", "feedback_size": "Feedback"}
+
+    type: TypeName | None = None
+    """Type of the action, e.g. `example_interfaces/action/Fibonacci`."""
+    bounds: BoundsSection | None = None
+    """Longest strings and sequences of its messages, where the type does not bound them."""
     goal_size: Size
     """Size of a goal, without headers."""
     result_size: Size
@@ -163,9 +183,15 @@ class ActionServer(MessageCallback):
     """Size of a feedback message, without headers."""
 
 
-class ActionClient(MessageCallback):
+class ActionClient(TypedMessage, MessageCallback):
     """An action client: three clients and two subscriptions of the middleware behind one handle."""
 
+    sizes: ClassVar[Mapping[str, str]] = {"goal_size": "Goal", "result_size": "Result", "feedback_size": "Feedback"}
+
+    type: TypeName | None = None
+    """Type of the action, e.g. `example_interfaces/action/Fibonacci`."""
+    bounds: BoundsSection | None = None
+    """Longest strings and sequences of its messages, where the type does not bound them."""
     action: Name
     """Action that it sends goals to."""
     goal_size: Size

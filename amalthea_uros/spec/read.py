@@ -26,6 +26,8 @@ _ADVICE = {
     "per_message": "Measure how long it takes to take a message, e.g. 30 us.",
     "rate": "Write how often messages arrive at most, e.g. 20 Hz.",
     "message_size": "Write the longest message, e.g. 64 B.",
+    "string": "Write the number of characters of the longest string in a message, e.g. 20.",
+    "sequence": "Write the number of elements of the longest sequence in a message, e.g. 6.",
     "frequency": "Write the clock of the controller, e.g. 160 MHz.",
     "bitrate": "Write the bit rate of the link, e.g. 20 Mbit/s.",
     "baud_rate": "Write the rate of the line, as the agent has it, e.g. 115200.",

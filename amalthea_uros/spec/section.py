@@ -6,7 +6,7 @@ Nothing is made of a class until a section of it is; what reads a file needs a t
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
 
 from amalthea_uros.diagnostics import Location
@@ -178,6 +178,11 @@ class DescriptionSection(metaclass=SectionKind):
         if not isinstance(value, dict):
             return value
         return {key: item for key, item in value.items() if not key.startswith(EXTENSION)}
+
+    @classmethod
+    def implied_keys(cls) -> Mapping[str, Sequence[str]]:
+        """Keys that must be stated only where another one is not, by that one."""
+        return {}
 
     @classmethod
     def _of_keys(cls, value: Any, loc: Path, errors: Errors) -> Any:

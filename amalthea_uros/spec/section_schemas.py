@@ -56,6 +56,9 @@ class _SectionSchemas:
             properties[field.key] = schema
         required = [field.key for field in kind.model_fields.values() if field.is_required]
         result: Schema = {"additionalProperties": False, "description": inspect.getdoc(kind), "properties": properties}
+        for stated, implied in kind.implied_keys().items():
+            required = [key for key in required if key not in implied]
+            result["allOf"] = [{"anyOf": [{"required": [stated]}, {"required": list(implied)}]}]
         result |= {"required": required} if required else {}
         result["type"] = "object"
         if not issubclass(kind, Shorthand):

@@ -7,11 +7,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from amalthea_uros._internal.ports import known_ports, parameter_services
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import resource_folder
+from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES
 from amalthea_uros.uros.assemble import Assembly
+from amalthea_uros.uros.firmware.code import code_texts, firmware_code
 from amalthea_uros.uros.generated_options import values_of, with_generated_options
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option
@@ -40,8 +43,31 @@ def generated_storage(assembly: Assembly) -> MessageStorage | None:
     return None if storage is None else replace(storage, needed=storage.slots)
 
 
-def texts_of(assembly: Assembly) -> dict[str, str]:
-    """The contents of the files, by name."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeWishes(Brief):
+    """The wishes for the code beyond the description.
+
+    Attributes
+    ----------
+    reconnects : whether it creates everything anew when the agent comes back
+    stamps : whether it sends a CAN frame where a callback starts and ends
+    """
+
+    reconnects: bool = False
+    stamps: bool = False
+
+
+def texts_of(assembly: Assembly, code: CodeWishes | None = None) -> dict[str, str]:
+    """The contents of the files, by name.
+
+    Parameters
+    ----------
+    code : None if only the files for the build are wanted
+
+    Raises
+    ------
+    ReadError : something in the description has no code.
+    """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     loader = FileSystemLoader(resource_folder("templates/generate"))
@@ -56,19 +82,25 @@ def texts_of(assembly: Assembly) -> dict[str, str]:
         rows = packages.setdefault(option.package, [])
         rows += [(option, value)] if option.name not in elsewhere else []
     application = assembly.description.application
+    handles = _constants("AMUROS_HANDLES", _handles(assembly))
     content = {
         "mark": MARK,
         "name": _in_comment(assembly.description.name),
         "packages": packages,
         "values": values,
         "checks": list(_checks(values)),
-        "handles": _constants("AMUROS_HANDLES", _handles(assembly)),
+        "handles": handles,
         "sizes": _constants("AMUROS_SIZE", _sizes(application)),
         "kconfig": kconfig,
     }
     is_xrce = _WITH_HEADER in packages
     names = (META, HEADER, *([KCONFIG] if kconfig else [])) if is_xrce else (CMAKE, HEADER)
-    return {name: environment.get_template(f"{name}.j2").render(content) for name in names}
+    texts = {name: environment.get_template(f"{name}.j2").render(content) for name in names}
+    if code is None:
+        return texts
+    constants = dict(zip(_handles(assembly), (constant for constant, _, _ in handles), strict=True))
+    firmware = firmware_code(assembly.description, assembly.system, reconnects=code.reconnects, stamps=code.stamps)
+    return texts | code_texts(firmware, environment, content | {"handle_constants": constants})
 
 
 def _kconfig(port: str | None, values: list[tuple[Option, int]]) -> list[tuple[str, str, Option]]:

@@ -65,6 +65,19 @@ def test_the_pools_of_zephyr_are_in_its_configuration(tmp_path):
     assert (finding.rule, "CONFIG_MICROROS_SUBSCRIBERS" in finding.help) == ("GEN005", True)
 
 
+def test_zephyr_implies_its_port(tmp_path):
+    text = (
+        APP.format(port="none", ros="humble")
+        .replace("  port: none\n", "")
+        .replace("hardware:", "os: {rtos: zephyr}\nhardware:")
+    )
+    (tmp_path / "app.yaml").write_text(text)
+    result = generate(tmp_path / "app.yaml")
+    assert result.assembly.description.middleware.port == "zephyr"
+    assert "-DRMW_UXRCE_TRANSPORT=custom" in options(result.texts)
+    assert 'CONFIG_MICROROS_SUBSCRIBERS="2"' in result.texts["amuros.conf"].splitlines()
+
+
 BOARD = "hardware: {{platform: {board}}}\nos: {{rtos: {rtos}}}\n"
 
 

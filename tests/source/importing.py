@@ -26,6 +26,8 @@ VALUES = {
     "order": "[]",
     "publishes": "[]",
     "events": "false",
+    "string": "20",
+    "sequence": "4",
 }
 
 

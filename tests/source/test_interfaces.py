@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from amalthea_uros._internal.message_types import MessageType, length_of
 from amalthea_uros.source.files import SourceFile
-from amalthea_uros.source.messages import MessageType, defined_types, length_of
+from amalthea_uros.source.messages import defined_types
 
 IDL = """
 #include "geometry_msgs/msg/Vector3.idl"
