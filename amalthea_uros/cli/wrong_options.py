@@ -23,7 +23,10 @@ _INSTEAD = {
 _OF_OTHERS = {
     ("analyze", "--duration"): "only amuros simulate and report have a duration; an analysis covers all times",
     ("analyze", "--list"): "write --keys, or --matching TEXT, for the values that --set can change",
-    ("optimize", "--set"): "write --offer OBJECT.KEY=VALUES, or write the changed file first: amuros analyze MODEL --set ... -o FILE",
+    (
+        "optimize",
+        "--set",
+    ): "write --offer OBJECT.KEY=VALUES, or write the changed file first: amuros analyze MODEL --set ... -o FILE",
     ("optimize", "--sweep"): "write --offer OBJECT.KEY=VALUES",
     ("sweep", "--offer"): "write --sweep OBJECT.KEY=VALUES",
     ("sweep", "--vary"): "write --sweep OBJECT.KEY=VALUES",
@@ -65,7 +68,7 @@ def explained(error: click.NoSuchOption) -> click.UsageError:
 
 
 def _of_format(name: str, command: click.Command) -> str:
-    """What to write for a format, which not every command has."""
+    """The advice for a format, which not every command has."""
     output = next((each for each in command.params if each.name == "outputs"), None)
     if name in getattr(getattr(output, "type", None), "names", ()):
         return f"write --output {name}=FILE"
