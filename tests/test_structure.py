@@ -23,7 +23,7 @@ LINES = {
     "am": 2,
     "analyze": 8681,
     "bridge": 2867,
-    "cli": 2420,
+    "cli": 2425,
     "compare": 3859,
     "design": 6400,
     "diagnostics": 43,

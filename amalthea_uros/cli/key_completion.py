@@ -27,8 +27,8 @@ class OfKey(Parsed[T]):
         if not paths or "=" in incomplete:
             return []
         try:
-            found = keys([paths] if not isinstance(paths, list | tuple) else list(paths), matching=incomplete)
+            values = keys([paths] if not isinstance(paths, list | tuple) else list(paths), matching=incomplete)
         except (AmurosError, InvalidArgumentError, OSError):
             return []
-        begun = [each for each in found if each.name.casefold().startswith(incomplete.casefold())]
+        begun = [each for each in values if each.name.casefold().startswith(incomplete.casefold())]
         return [CompletionItem(f"{each.name}=", help=each.value) for each in begun[:_MOST]]

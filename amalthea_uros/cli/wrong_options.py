@@ -68,7 +68,7 @@ def explained(error: click.NoSuchOption) -> click.UsageError:
 
 
 def _of_format(name: str, command: click.Command) -> str:
-    """What to write for a format, which not every command has."""
+    """The advice for a format, which not every command has."""
     output = next((each for each in command.params if each.name == "outputs"), None)
     if name in getattr(getattr(output, "type", None), "names", ()):
         return f"write --output {name}=FILE"

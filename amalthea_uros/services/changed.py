@@ -99,13 +99,13 @@ def open_changed(
 
 
 def _with_new_findings(opened: SystemInput, origin: ChangeOrigin, changes: Sequence[Change]) -> SystemInput:
-    """What was opened, with what is found in a model with other attributes in place of what was found without them."""
+    """The opened system; of a model with other attributes, with the findings of that."""
     if opened.model is None:
         return opened
     from amalthea_uros.design.model_attributes.origin import ModelOrigin
 
-    found = origin.findings(changes) if isinstance(origin, ModelOrigin) else None
-    return opened if found is None else replace(opened, findings=(*opened.model.findings, *found))
+    new = origin.findings(changes) if isinstance(origin, ModelOrigin) else None
+    return opened if new is None else replace(opened, findings=(*opened.model.findings, *new))
 
 
 def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:

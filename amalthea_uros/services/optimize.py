@@ -28,7 +28,7 @@ from amalthea_uros.timing.basics.settings import Settings
 
 #: So many proposals are shown, unless more are asked for.
 MOST_PROPOSALS = 5
-#: After so many designs that no description states, a search does not go on.
+#: After so many designs that no description states, a search ends.
 _MOST_UNSTATED = 500
 #: So many designs are judged, unless more are asked for.
 MOST_DESIGNS = 2000
@@ -176,14 +176,14 @@ def optimize(
 def _found(plan: OptimizationPlan, evaluate: StatedOnly, effort: Effort, count: int) -> Optimization:
     """The outcome of a search, each proposal proved by a full analysis of its own.
 
-    Designs that turn out not to be what any description states are left out; if no other one was found, the search goes on.
+    Designs that turn out not to be what any description states are left out; if no other one was found, the search continues.
     """
     problem, evaluator, before = plan.problem, plan.evaluator, plan.before
     while True:
-        found = search(replace(problem, evaluate=evaluate), effort)
-        found = proved_for_stated(found, evaluate.unstated)
-        proved, refuted = _proved(plan, found, count)
-        if not refuted or proved or found.ended or len(evaluate.unstated) > _MOST_UNSTATED:
+        result = search(replace(problem, evaluate=evaluate), effort)
+        result = proved_for_stated(result, evaluate.unstated)
+        proved, refuted = _proved(plan, result, count)
+        if not refuted or proved or result.ended or len(evaluate.unstated) > _MOST_UNSTATED:
             break
         evaluate = evaluate.without(refuted)
     return Optimization(
@@ -195,7 +195,7 @@ def _found(plan: OptimizationPlan, evaluate: StatedOnly, effort: Effort, count: 
         before=before,
         present=evaluator.judged((), before),
         proposals=proved,
-        search=without_unstated(found, refuted) if refuted else found,
+        search=without_unstated(result, refuted) if refuted else result,
         findings=plan.findings,
         settings=problem.present.settings,
     )

@@ -26,9 +26,9 @@ K = TypeVar("K", bound=NamedKey)
 def with_gaps(target: str, keys: Iterable[K]) -> list[tuple[int, K]]:
     """The keys that are meant by some of their names, with the number of names left out; those in the same case, if there are any."""
     every = list(keys)
-    found = [(gap, key) for key in every if (gap := _gap(target, key.names)) is not None]
-    if found:
-        return found
+    matches = [(gap, key) for key in every if (gap := _gap(target, key.names)) is not None]
+    if matches:
+        return matches
     folded = target.casefold()
     return [(gap, key) for key in every if (gap := _gap(folded, [each.casefold() for each in key.names])) is not None]
 

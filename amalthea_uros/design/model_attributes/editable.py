@@ -92,7 +92,7 @@ class EditableModel:
                 setattr(each.element, each.feature, value)
 
     def extracted(self, changes: Sequence[tuple[ModelKey, Change]]) -> Extraction:
-        """What the model with changes means; raises as `edited`. The last answer is kept, for those who ask again."""
+        """The system of the model with changes, and what cannot be extracted; raises as `edited`."""
         from amalthea_uros.bridge.extract import extract
 
         asked = tuple(change for _, change in changes)

@@ -34,7 +34,7 @@ SINGLE_VALUES = (
     StringObject,
     BooleanObject,
 )
-#: Names are what objects are found by, and say nothing about timing.
+#: Names are what objects are matches by, and say nothing about timing.
 _IDENTITY = ("name", "namespace")
 
 
@@ -131,7 +131,7 @@ class _KeysOfDocument:
                 yield from self.keys(item, item_path, item_names)
 
     def _item_names(self, items: Sequence[Element]) -> Iterator[tuple[str, ...]]:
-        """The names of each object of a list: with its number if others of the list have the same one, or none has one."""
+        """The names of each object of a list: with its number if it is not the only one with the name, or has none."""
         own = [_name_of(item, self.plans.of(type(item).__name__)) for item in items]
         counts = Counter(own)
         for index, name in enumerate(own):
@@ -152,27 +152,27 @@ def _name_of(item: Element, plan: ClassPlan | None) -> str:
 
 def with_last_name(target: str, keys: Iterable[ModelKey]) -> list[tuple[str, ModelKey]]:
     """The keys whose last name is that of a target, each with the target as this key spells it."""
-    found = []
+    matches = []
     for key in keys:
         for spelling in key.spellings:
             if target == spelling or target.endswith(f".{spelling}"):
-                found.append((target.removesuffix(spelling) + key.names[-1], key))
+                matches.append((target.removesuffix(spelling) + key.names[-1], key))
                 break
-    return found
+    return matches
 
 
 def matching(target: str, keys: Iterable[ModelKey]) -> list[ModelKey]:
     """The keys that are meant by some of their names, the last one among them; the fewest gaps between these count."""
     spelled = with_last_name(target, keys)
-    found: list[ModelKey] = []
+    matches: list[ModelKey] = []
     for name in dict.fromkeys(name for name, _ in spelled):
         gaps = with_gaps(name, _of(name, spelled))
-        found += (
+        matches += (
             [key for gap, key in gaps if gap == 0]
             or [key for _, key in gaps if name in shorter_names(key)]
             or [key for _, key in gaps]
         )
-    return found
+    return matches
 
 
 def _of(name: str, spelled: Iterable[tuple[str, ModelKey]]) -> list[ModelKey]:
@@ -186,11 +186,11 @@ def the_key(target: str, keys: Sequence[ModelKey]) -> ModelKey | None:
     ------
     InvalidArgumentError : the name means several keys.
     """
-    found = matching(target, keys)
-    if len(found) > 1:
-        names = listed(list(short_names(found, keys).values()))
+    matches = matching(target, keys)
+    if len(matches) > 1:
+        names = listed(list(short_names(matches, keys).values()))
         raise InvalidArgumentError(f"{target!r} means several values of the model: {names}; choose one")
-    return found[0] if found else None
+    return matches[0] if matches else None
 
 
 def short_names(some: Sequence[ModelKey], keys: Iterable[ModelKey]) -> dict[ModelKey, str]:

@@ -57,7 +57,7 @@ class ModelOrigin:
         return apply(self._edited_system(divided), self.present.settings, divided.others)
 
     def findings(self, changes: Sequence[Change]) -> tuple[Finding, ...] | None:
-        """What is found while the changed model is extracted; None if no attribute is changed. Raises as `configure`."""
+        """The findings of extracting the changed model; None if no attribute is changed. Raises as `configure`."""
         attributes = self.divided(changes).attributes
         return self.editable.extracted(attributes).findings if attributes else None
 
@@ -67,8 +67,8 @@ class ModelOrigin:
         if not divided.attributes:
             return described(self.present, changes) if changes else ()
         edited = self._edited_system(divided)
-        told = (*self._attributes(divided), *describe(edited, self.present.settings, divided.others))
-        return (*told, *consequences(self.present, self.configure(changes), told))
+        stated = (*self._attributes(divided), *describe(edited, self.present.settings, divided.others))
+        return (*stated, *consequences(self.present, self.configure(changes), stated))
 
     def divided(self, changes: Iterable[Change]) -> DividedModelChanges:
         """The changes by what they act on; InvalidArgumentError if nothing, or more than one value, has a name."""
@@ -86,11 +86,11 @@ class ModelOrigin:
 
     def _attributes(self, divided: DividedModelChanges) -> list[Difference]:
         before = {change.target: shown(key) for key, change in divided.attributes}
-        found = {change.target: (key, change) for key, change in divided.attributes}
+        by_target = {change.target: (key, change) for key, change in divided.attributes}
         with self.editable.edited(divided.attributes):
             return [
                 Difference(change.object, change.key, before[target], _shown_again(key))
-                for target, (key, change) in found.items()
+                for target, (key, change) in by_target.items()
             ]
 
     def __reduce__(self) -> tuple[object, ...]:

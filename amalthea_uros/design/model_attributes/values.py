@@ -78,7 +78,7 @@ def _reference_text(target: Element) -> str:
 
 
 def assigned(key: ModelKey, text: str, model: Model) -> Iterator[Assigned]:
-    """What is set for a text.
+    """The values that a text sets.
 
     Raises
     ------
@@ -89,8 +89,8 @@ def assigned(key: ModelKey, text: str, model: Model) -> Iterator[Assigned]:
         yield Assigned(holder, feature.name, _attribute(holder, feature.xml_name, feature.data_type, text))
     elif feature.is_reference:
         names = [name for name in map(str.strip, text.split(",")) if name] if feature.many else [text.strip()]
-        found = [_target(name, feature.target, model) for name in names]
-        yield Assigned(holder, feature.name, found if feature.many else found[0])
+        matches = [_target(name, feature.target, model) for name in names]
+        yield Assigned(holder, feature.name, matches if feature.many else matches[0])
     elif (quantity := type(key.part) if key.part is not None else feature.target) in _QUANTITIES:
         value, unit = _quantity(text, _QUANTITIES[quantity], getattr(key.part, "unit", None))
         if key.part is None:
@@ -142,14 +142,14 @@ def _quantity(text: str, units: _Units, present: StrEnum | None) -> tuple[Any, A
 def _target(name: str, target: type[Element], model: Model) -> Element:
     """The object of a class with a name, or with its qualified name where several have the same one."""
     every = [each for each in model.all(target) if isinstance(each.__dict__.get("name"), str)]
-    found = [each for each in every if each.__dict__["name"] == name] or [
+    matches = [each for each in every if each.__dict__["name"] == name] or [
         each for each in every if qualified_name(each) == name
     ]
-    if len(found) == 1:
-        return found[0]
+    if len(matches) == 1:
+        return matches[0]
     kind = target.__name__
-    if found:
-        choices = list(dict.fromkeys(qualified_name(each) for each in found))
+    if matches:
+        choices = list(dict.fromkeys(qualified_name(each) for each in matches))
         raise ValueError(f"several objects ({kind}) are called {name!r}: {listed(choices)}; choose one")
     names = list(dict.fromkeys(str(each.__dict__["name"]) for each in every))
     advice = did_you_mean(name, names) or (f"known: {listed(names)}" if names else "the model has none")
@@ -157,7 +157,7 @@ def _target(name: str, target: type[Element], model: Model) -> Element:
 
 
 def checked(key: ModelKey, target: str, text: str, model: Model) -> list[Assigned]:
-    """What is set for a text; InvalidArgumentError with the name of the key if it is no value of it."""
+    """The values that a text sets; InvalidArgumentError with the name of the key if it is no value of it."""
     try:
         return list(assigned(key, text, model))
     except ValueError as error:

@@ -61,7 +61,7 @@ def without_unstated(search: SearchResult, unstated: Sequence[DesignEvaluation])
 
 
 def proved_for_stated(search: SearchResult, unstated: Collection[Candidate]) -> SearchResult:
-    """A result of a search that was told which designs cannot be stated: only what was judged one by one proves something."""
+    """A result of a search that knows which designs cannot be stated: only what was judged one by one proves something."""
     if not unstated or search.is_exhaustive or search.conclusion not in (Conclusion.OPTIMAL, Conclusion.NONE):
         return search
     weaker = Conclusion.BEST_FOUND if search.best else Conclusion.NOT_FOUND
