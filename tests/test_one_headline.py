@@ -9,7 +9,7 @@ from command import amuros
 from amalthea_uros import analyze_files, simulate
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.units import time_text
+from amalthea_uros.units import Rounding, rounded_time_text
 from amalthea_uros.uros.described import describe_text
 
 BOARD = """
@@ -88,7 +88,7 @@ def test_the_worst_latency_is_the_same_everywhere(app, tmp_path):
     document = json.loads((tmp_path / "analysis.json").read_text())
     (found,) = (each for each in document["chains"] if each["name"] == "to-host")
     assert sum(hop["worst_ps"] for hop in found["hops"]) == way.worst
-    assert time_text(way.worst) in amuros("analyze", app, "--explain", "to-host").stdout.splitlines()[0]
+    assert rounded_time_text(way.worst, Rounding.UP) in amuros("analyze", app, "--explain", "to-host").stdout.splitlines()[0]
     amuros("report", app, "--no-simulation", "-o", tmp_path / "report.md")
     assert shown in (tmp_path / "report.md").read_text()
 

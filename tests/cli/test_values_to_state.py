@@ -23,7 +23,7 @@ def test_the_command_that_is_shown_gives_the_numbers(tmp_path):
     command = " ".join(line.strip().removesuffix("\\") for line in lines[start + 2 : lines.index("", start)])
     program, *words = shlex.split(command)
     assert program == "amuros"
-    assert lines[-1].startswith("Schedulable: ")
+    assert lines[-1].startswith("Not proved schedulable: ")
     after = amuros(*words, "--output", f"json={tmp_path / 'after.json'}")
     assert after.returncode in (0, 1), after.stderr
     gained = set(json.loads((tmp_path / "before.json").read_text())["missing"]["gained"])

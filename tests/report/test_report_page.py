@@ -59,7 +59,10 @@ def rows(page, anchor, caption):
 def test_the_verdict_is_the_first_section(path):
     first = parsed(page_of(path)).xpath("//main/section")[0]
     assert first.get("id") == "verdict"
-    assert text(first.xpath("./p")[0]) == closing_line(analysis_of(path).summary)
+    answer, line = map(text, first.xpath("./p"))
+    # The answer is about what the closing line names, or about its chain.
+    assert " limit " in answer
+    assert line == closing_line(analysis_of(path).summary)
 
 
 @pytest.mark.parametrize("path", ALL, ids=lambda path: path.name)
@@ -97,7 +100,7 @@ def test_the_reaction_time_of_the_thesis_is_explained_hop_by_hop():
     # The thesis has at most 19.978 ms for what was measured; by hand: 20 ms until the next message, and 25 us and 4 us to execute.
     hops = rows(page_of(ADVANCED), "chains", "Hops of factor-to-output")
     # The last row is their sum.
-    assert [float(hop["wait"].split()[0]) for hop in hops.values()] == [0, 18.991, 1.007, 19.998]
+    assert [float(hop["wait"].split()[0]) for hop in hops.values()] == [0, 19.0, 1.007, 20.0]
     assert rows(page_of(ADVANCED), "requirements", "Latencies")["factor-to-output"]["limit"] == "reaction ≤ 25 ms"
 
 
@@ -270,7 +273,7 @@ def test_a_summary_says_what_its_verdict_is_subject_to(tmp_path):
     text = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text().replace("reads: [memory_2, input]", "reads: [input]")
     (tmp_path / "gap.yaml").write_text(text)
     found = report(tmp_path / "gap.yaml").markdown
-    verdict, requirements = found.index("Schedulable: "), found.index("### 4 requirements")
+    verdict, requirements = found.index("Not proved schedulable: "), found.index("### 4 requirements")
     assert verdict < found.index("- CHN002 warning: ") < requirements
     (row,) = [line for line in found.splitlines() if line.startswith("| factor-to-output_reaction")]
     assert "| unknown | ≤ 25 ms |" in row

@@ -92,8 +92,8 @@ SHARE = limit(
 @pytest.mark.parametrize(
     ("simulation", "row"),
     [
-        (SIMULATION, "Control | Core | 300 | 0.400% | 16 us | 16.65 us | 29 us | 1 ms | 0 | observed ok"),
-        (replace(SIMULATION, processes=Results([SILENT])), "Control | - | 0 | 0.400% | - | - | - | - | 0 | -"),
+        (SIMULATION, "Control | Core | 300 | 0.4 % | 16 us | 16.65 us | 29 us | 1 ms | 0 | observed ok"),
+        (replace(SIMULATION, processes=Results([SILENT])), "Control | - | 0 | 0.4 % | - | - | - | - | 0 | -"),
         (SIMULATION, "way | 300 | 1 ms | 10.52 ms | 20 ms | 39 ms | 1"),
         (WITH_PARTS, "Callback | 300 | 2 us | 5 us | 9 us | 4 us"),
         (WITH_PARTS, "speed | 1,200 | 300 | 4 | 7 | 1 us | 2 us | 3 us"),
@@ -146,7 +146,7 @@ def test_what_there_is_and_what_is_left_out():
     shown = text(SIMULATION)
     assert "period 1 ms" in cells(shown, "Executor")
     assert "Assumptions\n  registers keep the last value\n" in shown
-    assert "1.670%" in shown
+    assert "1.67 %" in shown
     assert "Idle" not in shown
     assert "Labels" not in shown
     chain = replace(CHAIN, routes=(replace(CHAIN.routes[0], not_evaluated=1200),))
