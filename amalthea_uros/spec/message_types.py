@@ -72,6 +72,7 @@ class TypedMessage(DescriptionSection):
 
     @classmethod
     def implied_keys(cls) -> Mapping[str, Sequence[str]]:
+        """The sizes follow from the type."""
         return {"type": list(cls.sizes)}
 
 
