@@ -17,7 +17,7 @@ class Severity(StrEnum):
 
 
 class ToolEffect(StrEnum):
-    """What a tool does with the object of a finding when it imports the model.
+    """The effect of a tool on the object of a finding when it imports the model.
 
     Attributes
     ----------

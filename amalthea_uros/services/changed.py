@@ -109,7 +109,7 @@ def _with_new_findings(opened: SystemInput, origin: ChangeOrigin, changes: Seque
 
 
 def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:
-    """What changes of a subject act on: the text of a description, a model, or a system; raises as `description_origin`."""
+    """The origin that changes of a subject act on: the text of a description, a model, or a system; raises as `description_origin`."""
     if opened.model is not None:
         from amalthea_uros.design.model_attributes.editable import ModelSource
         from amalthea_uros.design.model_attributes.origin import ModelOrigin

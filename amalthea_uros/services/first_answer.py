@@ -29,7 +29,7 @@ MOST_RUNNABLES, MOST_PROCESSES = 300, 100
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FirstAnswer:
-    """What the verdict depends on.
+    """The object that the verdict depends on.
 
     Attributes
     ----------
@@ -80,12 +80,12 @@ def answer_about(result: AnalysisResult, item: Decisive, *, with_changes: bool) 
         return FirstAnswer(item=item, chain=_chain(analysis, item))
     explanation = explain_chain(analysis, item.object, quantity)
     is_tried = with_changes and item.verdict is not Verdict.MET and is_small(result)
-    found = None
+    improved = None
     if is_tried:
         from amalthea_uros.services.explain import improvements
 
-        found = improvements(result, item.object, quantity)
-    return FirstAnswer(item=item, chain=_chain(analysis, item), explanation=explanation, improvements=found)
+        improved = improvements(result, item.object, quantity)
+    return FirstAnswer(item=item, chain=_chain(analysis, item), explanation=explanation, improvements=improved)
 
 
 def is_small(result: AnalysisResult) -> bool:
@@ -94,7 +94,7 @@ def is_small(result: AnalysisResult) -> bool:
 
 
 def decisive(analysis: Analysis) -> Decisive | None:
-    """What is missed, or else not proved, or else closest to its limit.
+    """The limit that is missed, or else not proved, or else closest to its limit.
 
     An overloaded core comes before all that follows from it, then latencies of chains, as people ask for these.
     """

@@ -45,7 +45,7 @@ def generated_storage(assembly: Assembly) -> MessageStorage | None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CodeWishes(Brief):
-    """The wishes for the code beyond the description.
+    """The options for the code beyond the description.
 
     Attributes
     ----------

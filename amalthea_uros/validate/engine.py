@@ -66,7 +66,7 @@ def _findings(rule: ModelCheck, context: Context) -> Iterator[Finding]:
 
 
 def _effect(message: Downgraded, kind: FindingKind) -> ToolEffect | None:
-    """What the tool does that a rule is about; it fails at errors, unless something else is said."""
+    """The effect of the tool that a rule is about; it fails at errors, unless something else is said."""
     if message.effect is not None:
         return message.effect
     target = target_of(kind.id)

@@ -27,3 +27,11 @@ def test_the_table_counts_what_arrives():
     small = [path for path in sorted(CORPUS.rglob("*.amxmi")) if path.stat().st_size < 500_000]
     paths = [path for path in small if b"<eventChains" in path.read_bytes()]
     assert (len(paths), chains_of(paths)) == (4, 4)
+
+
+def test_a_stimulus_that_the_importer_leaves_out_is_exported():
+    # One executor in a loop, whose rounds are an arrival curve; equal files are counted once.
+    sample = ROOT / "samples" / "robot-xrce.amxmi"
+    found = count([sample, sample])
+    assert (found.files, found.failing, found.refused) == (1, 0, 0)
+    assert found.stated["stimuli"] == found.exported["stimuli"] == found.imported["stimuli"] + 1

@@ -60,15 +60,15 @@ def scheduled_responses(core: str, solution: Solution) -> Mapping[str, Response]
     if any(shortest == longest for task in tasks for shortest, longest in task.jobs.demands):
         solution.context.notes.assume(ASSUMPTION)
     is_exact = all(task.is_known for task in tasks)
-    found, time_base = {}, solution.context.demand_model.time_base(core)
+    responses, time_base = {}, solution.context.demand_model.time_base(core)
     for place, task in enumerate(tasks):
         bound = solution.responses[task.name]
         response = _response(place, tasks, ends[place], bound, time_base)
         if is_exact:
-            found[task.name] = replace(response, claim=Claim.EXACT)
+            responses[task.name] = replace(response, claim=Claim.EXACT)
         elif bound.worst is None or (response.worst or 0) < bound.worst:
-            found[task.name] = response
-    return found
+            responses[task.name] = response
+    return responses
 
 
 def _tasks(core: str, solution: Solution) -> Sequence[_UnpreemptedTask]:
@@ -135,7 +135,7 @@ def _response(place: int, tasks: Sequence[_UnpreemptedTask], ends: JobEnds, boun
 
 
 def _blocking(place: int, tasks: Sequence[_UnpreemptedTask], ends: JobEnds) -> Time:
-    """How long a job of lower priority goes on after the release of the job that ends the latest, in the schedule in which it does."""
+    """How long a job of lower priority executes after the release of the job that ends the latest, in the schedule in which it does."""
     release, before = tasks[place].jobs.first + ends.job * tasks[place].jobs.period, ends.history
     while before is not None:
         task, start, end, before = before

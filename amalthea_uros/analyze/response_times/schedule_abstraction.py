@@ -87,7 +87,7 @@ class JobEnds:
 
 def explored(streams: Sequence[JobStream], max_steps: int = MAX_STEPS) -> Sequence[JobEnds] | None:
     """When the jobs of each task can end, the most important task first; None if that takes more steps."""
-    found = [JobEnds() for _ in streams]
+    ends = [JobEnds() for _ in streams]
     hyperperiod = lcm(*(stream.period * stream.cycle for stream in streams))
     in_hyperperiod = sum(hyperperiod // stream.period for stream in streams)
     if in_hyperperiod * len(streams) > max_steps:
@@ -99,17 +99,17 @@ def explored(streams: Sequence[JobStream], max_steps: int = MAX_STEPS) -> Sequen
         before = _shifted(states, streams, hyperperiod, len(ends_of_hyperperiods))
         is_repeating = all(number >= stream.lead for started in states for number, stream in zip(started, streams, strict=True))
         if is_repeating and any(_is_within(before, earlier) for earlier in ends_of_hyperperiods):
-            return found
+            return ends
         ends_of_hyperperiods.append(before if is_repeating else {})
         for _ in range(in_hyperperiod):
             steps += len(streams) * sum(map(len, states.values()))
             if steps > max_steps:
                 return None
-            states = _merged(_followers(states, streams, found))
+            states = _merged(_followers(states, streams, ends))
 
 
 def _followers(
-    states: _States, streams: Sequence[JobStream], found: Sequence[JobEnds]
+    states: _States, streams: Sequence[JobStream], ends: Sequence[JobEnds]
 ) -> Iterator[tuple[tuple[int, ...], _Free]]:
     """The states after each job that can be the next one in a state."""
     for started, intervals in states.items():
@@ -125,7 +125,7 @@ def _followers(
                     shortest, longest = streams[task].demand(number)
                     begun = (task, latest, latest + longest, history)
                     on_time = max(shortest, start + shortest - certain[task])
-                    found[task].note(number, latest + longest - release, on_time, begun)
+                    ends[task].note(number, latest + longest - release, on_time, begun)
                     yield (*started[:task], number + 1, *started[task + 1 :]), (start + shortest, latest + longest, begun)
                 # What is less important starts before this is certainly released.
                 latest = min(latest, certain[task] - 1)
@@ -135,32 +135,32 @@ def _followers(
 
 def _merged(followers: Iterator[tuple[tuple[int, ...], _Free]]) -> _States:
     """The states, those with the same jobs and common times as one."""
-    together: _States = {}
+    merged: _States = {}
     for started, free in followers:
-        together.setdefault(started, []).append(free)
-    return {started: intervals if len(intervals) == 1 else _united(intervals) for started, intervals in together.items()}
+        merged.setdefault(started, []).append(free)
+    return {started: intervals if len(intervals) == 1 else _united(intervals) for started, intervals in merged.items()}
 
 
 def _united(intervals: list[_Free]) -> list[_Free]:
-    found: list[_Free] = []
+    united: list[_Free] = []
     for free in sorted(intervals, key=lambda interval: interval[:2]):
-        if found and free[0] <= found[-1][1]:
-            begin, end, history = found[-1]
-            found[-1] = (begin, end, history) if end >= free[1] else (begin, free[1], free[2])
+        if united and free[0] <= united[-1][1]:
+            begin, end, history = united[-1]
+            united[-1] = (begin, end, history) if end >= free[1] else (begin, free[1], free[2])
         else:
-            found.append(free)
-    return found
+            united.append(free)
+    return united
 
 
 def _shifted(states: _States, streams: Sequence[JobStream], hyperperiod: Time, times: int) -> _States:
     """The states some hyperperiods earlier. A core that is free before anything is released is as one that is free just then."""
-    found: _States = {}
+    shifted: _States = {}
     for started, intervals in states.items():
         early = tuple(number - times * hyperperiod // stream.period for number, stream in zip(started, streams, strict=True))
         next_release = min(stream.first + number * stream.period for number, stream in zip(early, streams, strict=True))
         shift = times * hyperperiod
-        found[early] = [(max(begin - shift, next_release), max(end - shift, next_release), None) for begin, end, _ in intervals]
-    return found
+        shifted[early] = [(max(begin - shift, next_release), max(end - shift, next_release), None) for begin, end, _ in intervals]
+    return shifted
 
 
 def _is_within(states: _States, others: _States) -> bool:

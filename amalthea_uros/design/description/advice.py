@@ -103,7 +103,7 @@ def _smaller(present: Written | None) -> Iterator[str]:
 
 
 def _others(present: Written | None, offered: Sequence[str]) -> Iterator[str]:
-    """What is available besides the present one."""
+    """Values that are available besides the present one."""
     yield from (each for each in dict.fromkeys(offered) if each != present)
 
 

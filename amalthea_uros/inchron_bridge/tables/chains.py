@@ -67,8 +67,8 @@ def build_chains(context: Exporting) -> None:
                 _ChainGraph(f"{chain.name}_{number + 1}" if number else chain.name, context)
                 for number, _ in enumerate(ways_in(events))
             ]
-            for builder, way in zip(builders, ways_in(events), strict=True):
-                builder.build(way)
+            for builder, path in zip(builders, ways_in(events), strict=True):
+                builder.build(path)
         except UnknownError as error:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
             continue
@@ -106,7 +106,7 @@ def ways_in(events: Unfolded) -> list[Unfolded]:
     if first.needed < len(first.branches):
         raise UnknownError("it begins with one of several events, and a graph begins with one")
     # A branch without events begins with what follows.
-    return [way for branch in dict.fromkeys(first.branches) for way in ways_in((*branch, *rest))]
+    return [path for branch in dict.fromkeys(first.branches) for path in ways_in((*branch, *rest))]
 
 
 def plain_events(chain: perf.EventChain) -> tuple[str | None, ...]:

@@ -111,7 +111,7 @@ def proposal_document(proposal: Proposal) -> Document:
 
 
 def _first_answer(result: AnalysisResult) -> Iterator[Section]:
-    """What the verdict depends on, what most of it is, and what would help."""
+    """The object that the verdict depends on, its largest part, and the best change."""
     if result.answer is not None:
         first, *others = answer_lines(result.answer)
         yield section(first, Sentences(others or [""]))

@@ -22,29 +22,29 @@ _SHARES = 3
 _DRAWBACKS = 2
 
 
-def answer_lines(answer: FirstAnswer) -> Iterator[str]:
+def answer_lines(first: FirstAnswer) -> Iterator[str]:
     """The answer, the first line alone being enough."""
-    yield headline(answer)
-    yield from filter(None, (_largest(answer), *_help(answer)))
+    yield headline(first)
+    yield from filter(None, (_largest(first), *_help(first)))
 
 
-def headline(answer: FirstAnswer) -> str:
-    """What is limited, its value and limit, and how far they are apart."""
-    item = answer.item
+def headline(first: FirstAnswer) -> str:
+    """The limited quantity, its value and limit, and how far they are apart."""
+    item = first.item
     if isinstance(item, ProcessorResult):
         return f"{item.name}: overloaded, at least {load_text(item.at_least, Rounding.DOWN)} of its time is needed"
     value, limit, bound = _value(item), item.limit, "at most" if item.is_upper else "at least"
     if limit is None:
-        return f"{_subject(answer)}: {item.verdict}"
+        return f"{_subject(first)}: {item.verdict}"
     text = f"no bound, limit {bound} {time_text(limit)}"
     if value is not None:
         text = f"{_bounded(value, limit, is_upper=item.is_upper)}, limit {time_text(limit)}"
-    return f"{_subject(answer)}: {text}: {_distance(item)}"
+    return f"{_subject(first)}: {text}: {_distance(item)}"
 
 
-def _subject(answer: FirstAnswer) -> str:
-    """What the limit is about."""
-    item, chain = answer.item, answer.chain
+def _subject(first: FirstAnswer) -> str:
+    """The subject of the limit."""
+    item, chain = first.item, first.chain
     assert not isinstance(item, ProcessorResult)
     if isinstance(item, ProcessResult):
         return f"{item.name}, response time"
@@ -90,11 +90,11 @@ def _missed_by(item: ProcessResult | RequirementResult) -> Time | None:
     return beyond if beyond > 0 else None
 
 
-def _largest(answer: FirstAnswer) -> str:
-    """What takes the largest part."""
-    explained, chain = answer.explanation, answer.chain
-    if answer.shares:
-        shares = (f"{name} {load_text(share, Rounding.UP)}" for name, share in answer.shares[:_SHARES])
+def _largest(first: FirstAnswer) -> str:
+    """The largest part, in words."""
+    explained, chain = first.explanation, first.chain
+    if first.shares:
+        shares = (f"{name} {load_text(share, Rounding.UP)}" for name, share in first.shares[:_SHARES])
         return f"most of it: {', '.join(shares)}"
     if isinstance(explained, ProcessExplanation):
         largest = largest_term(explained)
@@ -103,17 +103,17 @@ def _largest(answer: FirstAnswer) -> str:
         said = remark(chain)
         if chain.worst_if_not_lost is not None and chain.loss:
             return f"at most {at_most(chain.worst_if_not_lost)} for messages that are not lost"
-        return "" if said == getattr(answer.item, "reason", "") else said
+        return "" if said == getattr(first.item, "reason", "") else said
     if isinstance(explained, ChainExplanation) and (largest := largest_cause(explained)):
         return f"largest part: {largest}"
     return ""
 
 
-def _help(answer: FirstAnswer) -> Iterator[str]:
+def _help(first: FirstAnswer) -> Iterator[str]:
     """The change that helps most, and the options to try it."""
-    found, best, item = answer.improvements, answer.best, answer.item
+    found, best, item = first.improvements, first.best, first.item
     if isinstance(item, ProcessorResult):
-        yield f"what helps: {relief(item, is_wire=answer.is_wire)}"
+        yield f"what helps: {relief(item, is_wire=first.is_wire)}"
     if found is None or not isinstance(item, RequirementResult):
         return
     if best is None:

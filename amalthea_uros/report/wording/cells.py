@@ -104,7 +104,7 @@ def clock_text(least: Frequency) -> str:
 
 
 def relief(core: ProcessorResult, *, is_wire: bool = False) -> str:
-    """What an overloaded core or wire takes at least: shorter times, or a faster clock; to meet limits it can take more."""
+    """The least demand of an overloaded core or wire: shorter times, or a faster clock; to meet limits it can take more."""
     load = core.at_least
     if is_wire:
         rate = "a higher bit rate" if core.frequency is None else f"at least {clock_text(core.frequency * load)} as bit rate"

@@ -39,7 +39,7 @@ def largest_cause(explanation: ChainExplanation) -> str:
 
 
 def largest_term(explanation: ProcessExplanation) -> str:
-    """What takes the largest part of a response time; "" if it has no several parts."""
+    """The largest part of a response time; "" if it has no several parts."""
     response = explanation.process.response
     if response is None or response.worst is None:
         return ""

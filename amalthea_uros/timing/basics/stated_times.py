@@ -42,13 +42,9 @@ def stated_time(
     return time
 
 
-#: Nobody means less than a nanosecond: such a number was written without the unit that was meant.
-_LEAST_NUMBER = 1000
-
-
 def kept_time(what: str, value: TimeLike) -> Time:
-    """Whole picoseconds of a time, or of a number of them, as results have; raises as `stated_time` for small numbers."""
-    return value if isinstance(value, int) and not 0 < abs(value) < _LEAST_NUMBER else stated_time(what, value)
+    """Whole picoseconds of a time, or of a whole number of them, as results have; raises as `stated_time` for other numbers."""
+    return value if isinstance(value, int) and not isinstance(value, bool) else stated_time(what, value)
 
 
 def _picoseconds(what: str, value: TimeLike, unit: str | None, rounding: Callable[[Fraction], int], remedy: str) -> Time:

@@ -129,7 +129,7 @@ class WirePlan:
 
     @property
     def assumptions(self) -> Iterator[str]:
-        """What is assumed about frames of which only the longest and the shortest are certain."""
+        """The assumptions about frames of which only the longest and the shortest are certain."""
         if any(frame.weights for parts in self.frames.values() for part in parts for frame in part):
             yield (
                 f"means and simulations: each byte on {self.name!r} has any of its {BYTES} values as often, "

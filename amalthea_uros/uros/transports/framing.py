@@ -11,10 +11,9 @@ How many bytes are escaped depends on their values, which are not specified: at 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
+from decimal import Context, Decimal, localcontext
 from functools import cache
-from itertools import zip_longest
-from math import comb
+from itertools import accumulate, zip_longest
 
 from amalthea_uros.uros.transports.line import Frame
 
@@ -29,6 +28,8 @@ _PIECE = CHUNK - 1
 #: Values of a byte, and those of them that are escaped: 0x7D and 0x7E.
 BYTES, ESCAPED = 256, 2
 BILLION = 10**9
+#: Chances that are smaller than that of the most frequent number by such a factor change no billionth.
+_NEGLIGIBLE = Decimal("1e-20")
 
 
 def least_frame(length: int) -> int:
@@ -76,7 +77,6 @@ def spread(length: int, least: Sequence[int], most: Sequence[int], bits_per_byte
     return tuple(frames)
 
 
-@cache
 def _weights(count: int, before: int, room: int) -> tuple[tuple[int, int], ...]:
     """How many escaped bytes are in a frame with room for so many, and how often, if so many of them are in those before.
 
@@ -87,21 +87,38 @@ def _weights(count: int, before: int, room: int) -> tuple[tuple[int, int], ...]:
     if not room:
         return ()
     chances = _escaped(count)
-    weights = {0: sum(chances[: before + 1])} | dict(enumerate(chances[before + 1 : before + room], 1))
-    weights[room] = sum(chances[before + room :])
+    up_to = _at_most(count)
+    weights = {0: up_to[min(before, len(up_to) - 1)]} | dict(enumerate(chances[before + 1 : before + room], 1))
+    weights[room] = up_to[-1] - up_to[min(before + room, len(up_to)) - 1]
     # What is possible is not excluded, however rare it is.
     return tuple((more, max(1, weight)) for more, weight in weights.items() if weight or more in (0, room))
 
 
 @cache
+def _at_most(count: int) -> tuple[int, ...]:
+    """How often at most so many of some random bytes are escaped, from 0 on, in billionths."""
+    return tuple(accumulate(_escaped(count)))
+
+
+@cache
 def _escaped(count: int) -> tuple[int, ...]:
-    """How often so many of some random bytes are escaped, from 0 on, in billionths; what is rarer is left out."""
-    counts: list[int] = []
-    while sum(counts) < BILLION - count and len(counts) <= count:
-        number = len(counts)
-        choices = comb(count, number) * ESCAPED**number * (BYTES - ESCAPED) ** (count - number)
-        counts.append(round(Fraction(choices * BILLION, BYTES**count)))
-    return tuple(counts)
+    """How often so many of some random bytes are escaped, from 0 on, in billionths; what is rarer is left out.
+
+    These are binomial numbers, as ratios to that of the most frequent number, in decimals: the same ones on each machine.
+    """
+    with localcontext(Context(prec=40)):
+        ratios: dict[int, Decimal] = {(usual := count * ESCAPED // BYTES): Decimal(1)}
+        for number in range(usual, count):
+            if ratios[number] < _NEGLIGIBLE:
+                break
+            ratios[number + 1] = ratios[number] * (count - number) * ESCAPED / ((number + 1) * (BYTES - ESCAPED))
+        for number in range(usual, 0, -1):
+            if ratios[number] < _NEGLIGIBLE:
+                break
+            ratios[number - 1] = ratios[number] * number * (BYTES - ESCAPED) / ((count - number + 1) * ESCAPED)
+        whole = sum(ratios.values())
+        counts = {number: round(ratio * BILLION / whole) for number, ratio in ratios.items()}
+    return tuple(counts.get(number, 0) for number in range(1 + max(number for number, each in counts.items() if each)))
 
 
 def in_chunks(length: int, bits_per_byte: int) -> tuple[Frame, ...]:
