@@ -61,6 +61,7 @@ def test_a_chain_over_a_reliable_message_has_no_bound():
 @pytest.mark.parametrize(
     ("old", "new", "why"),
     [
+        ("losses: {to_agent: 1 per 10 s}", "loses_messages: true", "how many are lost is not stated"),
         ("1 per 10 s", "1 %", "any number of messages can be lost"),
         ("best-effort", "reliable", "can wait for a missing one before it"),
         ("executor: {", "reliable: {waits: false}\n  executor: {", "not each reliable message is a publication that waits"),

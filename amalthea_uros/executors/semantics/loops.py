@@ -119,7 +119,7 @@ def _sent_again(system: System) -> dict[str, str]:
     reasons = {
         wire.name: reason
         for wire in system.network.wires
-        if wire.losses and wire.name in acknowledging and (reason := why_unbounded(wire, system))
+        if wire.loses_messages and wire.name in acknowledging and (reason := why_unbounded(wire, system))
     }
     return {
         each.name: f"messages are lost on {each.wire!r}, and reliable ones are sent again: {reasons[each.wire]}"

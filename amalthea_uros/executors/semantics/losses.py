@@ -48,6 +48,8 @@ def why_unbounded(wire: Wire, system: System) -> str:
     sent = acknowledged_from_controller(wire.name, system)
     published = {each.transmission: each for each in publications(system)}
     received = _data(wire.name, Direction.TO_CONTROLLER, system)
+    if not wire.losses:
+        return "how many are lost is not stated; state it, e.g. 'losses: 1 per 10 s'"
     if any(not losses.window for losses in wire.losses):
         return "with a probability, any number of messages can be lost; state how many are in some time, e.g. '1 per 10 s'"
     recovery = wire.recovery
