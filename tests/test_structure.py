@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1045,
     "_version": 1,
     "am": 2,
-    "analyze": 8796,
+    "analyze": 8798,
     "bridge": 2867,
     "cli": 2459,
     "compare": 3859,
@@ -48,7 +48,7 @@ LINES = {
     "timing": 5626,
     "trace": 5057,
     "units": 206,
-    "uros": 7411,
+    "uros": 7421,
     "validate": 3660,
     "xmi": 8542,
 }

@@ -95,7 +95,9 @@ def analyze(path: Path, folder: Path) -> None:
     """The exit code follows the closing line, and no verdict is better than what is known."""
     report = folder / "analysis.json"
     ended = run("analyze", path, "--output", "text", "--output", f"json={report}")
-    closing = [line for line in (ended.out + ended.err).splitlines() if line.startswith(("Schedulable: ", "Not proved schedulable: "))]
+    closing = [
+        line for line in (ended.out + ended.err).splitlines() if line.startswith(("Schedulable: ", "Not proved schedulable: "))
+    ]
     if ended.code == 2:
         return
     if not closing:

@@ -159,7 +159,9 @@ def _shifted(states: _States, streams: Sequence[JobStream], hyperperiod: Time, t
         early = tuple(number - times * hyperperiod // stream.period for number, stream in zip(started, streams, strict=True))
         next_release = min(stream.first + number * stream.period for number, stream in zip(early, streams, strict=True))
         shift = times * hyperperiod
-        shifted[early] = [(max(begin - shift, next_release), max(end - shift, next_release), None) for begin, end, _ in intervals]
+        shifted[early] = [
+            (max(begin - shift, next_release), max(end - shift, next_release), None) for begin, end, _ in intervals
+        ]
     return shifted
 
 
