@@ -150,7 +150,7 @@ def _offsets(explanation: ChainExplanation, system: System) -> Iterator[Improvin
 
 
 def _clocks(processes: Sequence[str], analysis: Analysis) -> Iterator[ImprovingChange]:
-    wires = {core for wire in analysis.solution.context.system.network.wires for core in wire.cores}
+    wires = analysis.solution.context.system.network.wire_cores
     for core in dict.fromkeys(analysis.processes[name].processor for name in processes):
         if core in wires:
             continue  # their drivers also wait in ticks, which no other bit rate makes shorter
@@ -161,7 +161,7 @@ def _clocks(processes: Sequence[str], analysis: Analysis) -> Iterator[ImprovingC
 
 def _cores(system: System) -> list[str]:
     """The cores of the controller: those that stand for wires or belong to others are not available."""
-    wires = {core for wire in system.network.wires for core in wire.cores}
+    wires = system.network.wire_cores
     return [name for name in system.cores if name not in wires]
 
 

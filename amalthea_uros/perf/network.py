@@ -193,3 +193,8 @@ class Network(Brief):
     agent: str = "Agent"
     waits: tuple[Wait, ...] = ()
     assumptions: tuple[str, ...] = ()
+
+    @property
+    def wire_cores(self) -> frozenset[str]:
+        """The cores that stand for the directions of wires."""
+        return frozenset(core for wire in self.wires for core in wire.cores)

@@ -136,7 +136,7 @@ def latencies_of_messages(analysis: Analysis, remark: str = "why") -> Table:
 
 def cores_of(analysis: Analysis) -> list[ProcessorResult]:
     """The cores that execute something, without those that stand for wires."""
-    wires = {core for wire in analysis.solution.context.system.network.wires for core in wire.cores}
+    wires = analysis.solution.context.system.network.wire_cores
     return [each for each in analysis.processors if each.worst != 0 and each.name not in wires]
 
 

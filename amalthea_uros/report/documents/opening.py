@@ -52,7 +52,9 @@ class Opening:
 def facts(content: ReportContent) -> str:
     """How large the system is."""
     system = content.system
-    numbers = {"core": len(system.cores), "task": len(system.software.tasks), "interrupt": len(system.software.isrs)}
+    wires = system.network.wires
+    cores = len(system.cores.keys() - system.network.wire_cores)
+    numbers = {"core": cores, "wire": len(wires), "task": len(system.software.tasks), "interrupt": len(system.software.isrs)}
     numbers |= {"runnable": len(system.software.runnables), "event chain": len(system.chains)}
     numbers |= {"limit": len(judged_items(content.analysis))}
     return ", ".join(counted(number, noun) for noun, number in numbers.items() if number)

@@ -27,12 +27,14 @@ from amalthea_uros.report.basics.document import (
 )
 from amalthea_uros.report.documents.analysis import (
     callbacks,
+    cores_of,
     execution_times,
     handles,
     impact_section,
     latencies_of_messages,
     methods,
     response_times,
+    wires_of,
 )
 from amalthea_uros.report.documents.descriptions import bus_section, pools_section
 from amalthea_uros.report.documents.explanation import interference, message_hops, terms_of
@@ -134,19 +136,23 @@ def _system_section(content: ReportContent) -> Section | None:
 
 
 def _load_section(content: ReportContent) -> Section | None:
-    """The best, mean and worst load of each core that executes something."""
-    used = [core for core in content.analysis.processors if core.worst != 0]
-    if not used:
+    """The best, mean and worst load of each core and wire that is used."""
+    cores, wires = cores_of(content.analysis), wires_of(content.analysis)
+    if not cores and not wires:
         return None
-    titles = ("core", ">clock", ">best", ">mean", ">worst", ">observed", "")
-    rows = [_row_of_loads(core, content) for core in used]
+    tables = [
+        table(
+            title, (kind, clock, ">best", ">mean", ">worst", ">observed", ""), [_row_of_loads(each, content) for each in used]
+        )
+        for title, kind, clock, used in (
+            ("Load of each core", "core", ">clock", cores),
+            ("Utilisation of each wire", "wire", ">bit rate", wires),
+        )
+        if used
+    ]
     lead = "The part of its time that a core needs for what is activated; above 100 % work piles up without end."
-    return Section(
-        "load",
-        "Load of the cores",
-        lead,
-        [Figure("loads", draw_loads(content.analysis)), table("Load of each core", titles, rows)],
-    )
+    title = "Load of the cores and wires" if wires else "Load of the cores"
+    return Section("load", title, lead, [Figure("loads", draw_loads(content.analysis)), *tables])
 
 
 def _row_of_loads(core: ProcessorResult, content: ReportContent) -> tuple[Cell, ...]:

@@ -69,8 +69,16 @@ def draw_loads(analysis: Analysis) -> Markup:
     bottom = TOP + _ROW * len(cores)
     rows = [_row(core, TOP + _ROW * index, scale) for index, core in enumerate(cores)]
     body = (*_grid(scale, bottom), *rows, limit_line(vertical(scale.x(1), TOP - 4, bottom)))
-    subtitle, notes = _subtitle(analysis.processors), _notes(analysis.processors)
-    return picture_of("Load of the cores", subtitle, body, bottom + _AXIS + _GAP, _legend(cores), notes)
+    wires = analysis.solution.context.system.network.wire_cores
+    subtitle, notes = _subtitle(analysis.processors, wires), _notes(analysis.processors)
+    return picture_of(
+        "Load of the cores and wires" if wires else "Load of the cores",
+        subtitle,
+        body,
+        bottom + _AXIS + _GAP,
+        _legend(cores),
+        notes,
+    )
 
 
 def _shown(cores: Sequence[ProcessorResult]) -> list[ProcessorResult]:
@@ -142,9 +150,12 @@ def _notes(cores: Sequence[ProcessorResult]) -> list[str]:
     return notes
 
 
-def _subtitle(cores: Sequence[ProcessorResult]) -> str:
+def _subtitle(cores: Sequence[ProcessorResult], wires: frozenset[str]) -> str:
     highest = max(cores, key=_greatest)
-    return f"{counted(len(cores), 'core')}, the highest load is that of {highest.name}: {_values(highest)}"
+    sent = sum(core.name in wires for core in cores)
+    kinds = ((len(cores) - sent, "core"), (sent, "wire direction"))
+    which = " and ".join(counted(number, noun) for number, noun in kinds if number)
+    return f"{which}, the highest load is that of {highest.name}: {_values(highest)}"
 
 
 def _greatest(core: ProcessorResult) -> Fraction:

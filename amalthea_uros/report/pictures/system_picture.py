@@ -238,7 +238,8 @@ def _subtitle(shown: SystemFlows) -> str:
     system = shown.system
     tasks, isrs = (len(system.software.tasks), "task"), (len(system.software.isrs), "ISR")
     flows, chains = (len(shown.flows), "flow"), (len(system.chains), "event chain")
-    return _counts((len(system.cores), "core"), tasks, isrs, flows, chains) or "no processes"
+    cores = (len(system.cores.keys() - system.network.wire_cores), "core")
+    return _counts(cores, (len(system.network.wires), "wire"), tasks, isrs, flows, chains) or "no processes"
 
 
 # Drawing
