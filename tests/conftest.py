@@ -27,8 +27,8 @@ settings.load_profile(PROFILE)
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Colours are what the tests of colours ask for.
-for name in ("NO_COLOR", "FORCE_COLOR"):
+# Colours and widths are what their tests ask for; Python's `readline` states the size of a terminal for the workers.
+for name in ("NO_COLOR", "FORCE_COLOR", "COLUMNS", "LINES"):
     os.environ.pop(name, None)
 
 # What Python and numba compile is kept in one folder, for the other workers, for the commands that tests start, and for the next run.
