@@ -41,7 +41,7 @@ def test_options_and_settings_take_quantities_with_their_units():
     assert (options.duration, options.traced) == (10 * 10**12, (0, 10**9))
     settings = amuros.Settings(frequencies={"Core_0": "300 MHz"}, phases={"cmd_vel": "2 ms"})
     assert (settings.frequencies, settings.phases) == ({"Core_0": 300 * 10**6}, {"cmd_vel": 2 * 10**9})
-    with pytest.raises(amuros.InvalidArgumentError, match="the number 1.5 has no unit; write a text such as '1.5 ms'"):
+    with pytest.raises(amuros.InvalidArgumentError, match=r"the number 1\.5 has no unit; write a text such as '1\.5 ms'"):
         amuros.Options(duration=1.5)
     with pytest.raises(amuros.InvalidArgumentError, match="Core_0: '300' has no unit"):
         amuros.Settings(frequencies={"Core_0": "300"})
