@@ -9,9 +9,12 @@ from opponent.models.reading import kind_of
 
 Element = ElementTree.Element
 
-ElementTree.register_namespace("am", "http://app4mc.eclipse.org/amalthea/3.3.0")
-ElementTree.register_namespace("xmi", "http://www.omg.org/XMI")
-ElementTree.register_namespace("xsi", "http://www.w3.org/2001/XMLSchema-instance")
+#: The prefixes of models. They are registered with each text: other tests register those of other versions.
+_PREFIXES = {
+    "am": "http://app4mc.eclipse.org/amalthea/3.3.0",
+    "xmi": "http://www.omg.org/XMI",
+    "xsi": "http://www.w3.org/2001/XMLSchema-instance",
+}
 
 
 def erased(text: str, rng: Random) -> tuple[str, str]:
@@ -27,6 +30,8 @@ def erased(text: str, rng: Random) -> tuple[str, str]:
     name = rng.choice(list(known))
     if not known[name](root, rng):
         return text, ""
+    for prefix, uri in _PREFIXES.items():
+        ElementTree.register_namespace(prefix, uri)
     return ElementTree.tostring(root, encoding="unicode"), name
 
 
