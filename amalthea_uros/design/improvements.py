@@ -11,7 +11,7 @@ from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
+from amalthea_uros.analyze.results.chains import EXPLAINED, LIMITED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ChainExplanation
 from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.analyze.system import analyze_while
@@ -21,6 +21,7 @@ from amalthea_uros.design.description.edit import edit_description
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.improving_changes import ImprovingChange, candidates
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.timing.activation.releases import counters, nominal_period
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Rounding, Time, percent_text, time_text
@@ -51,6 +52,7 @@ class Improvement:
     before : None if there was no finite value
     claim : of the value after the change
     latencies : all latencies of the chain that can be explained, before and after; None where there is no finite value
+    is_enough : whether all limits of the latency are met after the change, by the verdicts of its analysis; None if it has no limit
     """
 
     change: ImprovingChange
@@ -60,6 +62,7 @@ class Improvement:
     claim: Claim
     drawbacks: tuple[Drawback, ...] = ()
     latencies: Mapping[LatencyQuantity, tuple[Time | None, Time | None]] = field(default_factory=dict)
+    is_enough: bool | None = None
 
     @property
     def is_safe(self) -> bool:
@@ -94,13 +97,14 @@ class Improvements(Shown):
         best = f"{time_text(self.found[0].after)} by {self.found[0].change.text}" if self.found else "none found"
         return f"<Improvements of {self.chain}, {self.quantity.replace('_', ' ')}: {best}>"
 
-    def recommended(self, limit: Time | None = None) -> Improvement | None:
+    @property
+    def recommended(self) -> Improvement | None:
         """The change to recommend, of those that break nothing: the one with the greatest effect per change.
 
-        If some keep the limit, only these count, and of them the ones with the fewest changes.
+        If some are enough for the limits, only these count, and of them the ones with the fewest changes.
         """
         safe = [each for each in self.found if each.is_safe]
-        enough = [each for each in safe if limit is not None and each.after <= limit]
+        enough = [each for each in safe if each.is_enough]
         if enough:
             return min(enough, key=lambda each: (each.change.count, each.after))
         return min(safe, key=lambda each: each.per_change, default=None)
@@ -304,7 +308,18 @@ def _improvement(
         claim=value.claim,
         drawbacks=tuple(_drawbacks(chain, latencies, before, after)),
         latencies=latencies,
+        is_enough=_is_enough(chain, quantity, after),
     )
+
+
+def _is_enough(chain: str, quantity: LatencyQuantity, analysis: Analysis) -> bool | None:
+    """Whether the upper limits of a latency are met; None if it has none."""
+    verdicts = [
+        each.verdict
+        for each in analysis.requirements
+        if each.object == chain and each.is_upper and LIMITED.get(each.quantity) is quantity
+    ]
+    return all(verdict is Verdict.MET for verdict in verdicts) if verdicts else None
 
 
 def _latency(analysis: Analysis, chain: str, quantity: LatencyQuantity) -> Time | None:

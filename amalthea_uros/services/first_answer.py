@@ -50,9 +50,8 @@ class FirstAnswer:
 
     @property
     def best(self) -> Improvement | None:
-        """The change to recommend: safe, and if possible enough to meet the limit."""
-        limit = self.item.limit if isinstance(self.item, RequirementResult) else None
-        return None if self.improvements is None else self.improvements.recommended(limit)
+        """The change to recommend: safe, and if possible enough to meet the limits."""
+        return None if self.improvements is None else self.improvements.recommended
 
 
 def first_answer(result: AnalysisResult, *, with_changes: bool = True) -> FirstAnswer | None:

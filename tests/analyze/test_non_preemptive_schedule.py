@@ -1,4 +1,4 @@
-"""Non-preemptive tasks with known releases, against schedules that are played."""
+"""Non-preemptive tasks with known releases, against schedules that a simple scheduler makes."""
 
 from dataclasses import replace
 from math import lcm

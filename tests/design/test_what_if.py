@@ -136,3 +136,17 @@ def test_wrong_changes_are_refused_with_advice(changes, message):
     with pytest.raises(InvalidArgumentError) as refused:
         amuros.what_if(MODEL, changes)
     assert message in str(refused.value)
+
+
+def test_a_platform_that_has_changed_is_read_again(tmp_path):
+    platform, path = tmp_path / "board.yaml", tmp_path / "app.yaml"
+    path.write_text(
+        "amuros: 1\nname: app\nhardware: {platform: ./board.yaml}\n"
+        "tasks: [{name: T, period: 10 ms, execution_time: 1 ms, priority: 1}]\n"
+    )
+    clocks = []
+    for clock in ("100 MHz", "200 MHz"):
+        platform.write_text(f"amuros: 1\nplatform: board\nhardware: {{cores: 1, frequency: {clock}}}\n")
+        (core,) = amuros.what_if(path, ["T.period=20ms"]).system.cores.values()
+        clocks.append(amuros.what_if(path, ["T.period=20ms"]).system.frequency_of(core.clock))
+    assert clocks == [100 * 10**6, 200 * 10**6]

@@ -6,6 +6,7 @@ import pytest
 from support import ROOT
 
 from amalthea_uros.editor.hover import hover_text
+from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.documents.analysis import analysis_document
 from amalthea_uros.report.wording.answer import answer_lines
 from amalthea_uros.services.analyze import analyze, analyze_files
@@ -63,14 +64,18 @@ def test_the_recommended_change_is_enough_and_holds_in_the_edited_file(answer, d
 
 
 def test_what_people_change_is_tried_and_each_value_is_that_of_the_edited_file(answer):
-    after = {each.change.text: each.after for each in answer.improvements.found}
+    after = {each.change.text: each for each in answer.improvements.found}
     edits = {
         "driver.write dma -> blocking": ("write: dma", "write: blocking"),
         "serial.baud_rate 460800 -> 921600": ("baud_rate: 460800", "baud_rate: 921600"),
         "slow_status.message_size 312 B -> 156 B": ("message_size: 312 B", "message_size: 156 B"),
     }
     for text, (old, new) in edits.items():
-        assert after[text] == analyze(DRIVE.replace(old, new)).chains["command-to-motor"].worst
+        edited = analyze(DRIVE.replace(old, new))
+        verdicts = [each.verdict for each in edited.requirements if each.object == "command-to-motor"]
+        assert after[text].after == edited.chains["command-to-motor"].worst
+        assert after[text].is_enough is all(verdict is Verdict.MET for verdict in verdicts)
+    assert {each.is_enough for each in after.values()} == {True, False}
 
 
 def test_a_wire_is_no_core(drive):

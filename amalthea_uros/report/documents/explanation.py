@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.results.chains import LIMITED, LatencyQuantity
+from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.results.explanations import OriginKind
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
@@ -219,7 +219,7 @@ def _chain(explanation: ChainExplanation, found: Improvements | None) -> Iterato
         largest = largest_cause(explanation)
         yield Sentences([*_limits(explanation), *([f"largest part: {largest}"] if largest else [])])
     if found is not None:
-        yield Sentences(list(_best_change(found, _tightest_limit(explanation))))
+        yield Sentences(list(_best_change(found)))
     if explanation.chain.crosses_messages:
         yield message_hops(explanation.chain)
         yield Sentences(list(_remarks_on_messages(explanation.chain)))
@@ -239,12 +239,6 @@ def _limits(explanation: ChainExplanation) -> Iterator[str]:
             rest = f", {_margin(each, each.margin or 0)}"
         limit = "" if each.limit is None else f" {'at most' if each.is_upper else 'at least'} {time_text(each.limit)}"
         yield f"{each.name}, {each.quantity}{limit}: {each.verdict}{rest}"
-
-
-def _tightest_limit(explanation: ChainExplanation) -> Time | None:
-    """Of the limits of this latency."""
-    limits = [each for each in explanation.requirements if LIMITED.get(each.quantity) is explanation.quantity and each.is_upper]
-    return min((each.limit for each in limits if each.limit is not None), default=None)
 
 
 def message_hops(chain: ChainResult) -> Table:
@@ -329,9 +323,9 @@ def _executions(explanation: ChainExplanation) -> Iterator[Block]:
     yield Sentences([f"... {len(found) - len(rows):,} more"] if len(found) > len(rows) else [])
 
 
-def _best_change(found: Improvements, limit: Time | None) -> Iterator[str]:
+def _best_change(found: Improvements) -> Iterator[str]:
     """The change with the greatest effect that breaks nothing, with the options that show all its effects."""
-    recommended = found.recommended(limit)
+    recommended = found.recommended
     if recommended is not None:
         yield f"what helps: {recommended.change.text}, which gives {at_most(recommended.after)} ({recommended.claim})"
         yield f"to see all its effects: {shlex.join(recommended.change.options)}"

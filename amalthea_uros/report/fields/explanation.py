@@ -119,7 +119,7 @@ declare(
     ("changes", "differences"),
     ("before_ps", "before"),
     ("after_ps", "after"),
-    *("claim", "is_safe"),
+    *("claim", "is_safe", "is_enough"),
     ("drawbacks", lambda found: map(_named("name", "before", "after", "is_verdict"), found.drawbacks)),
     (
         "latencies",

@@ -119,9 +119,9 @@ def _help(first: FirstAnswer) -> Iterator[str]:
     if best is None:
         yield f"no change that was tried helps without breaking something else ({found.tried} tried)"
         return
-    verdict = ""
-    if item.limit is not None:
-        verdict = ", limit met" if best.after <= item.limit else f", still {at_most(best.after - item.limit)} above"
+    verdict = ", limit met" if best.is_enough else ""
+    if item.limit is not None and best.after > item.limit:
+        verdict = f", still {at_most(best.after - item.limit)} above"
     yield f"best change: {best.change.text}: at most {at_most(best.after, item.limit)}{verdict}"
     if best.drawbacks:
         worse = (f"{each.name}: {each.before} -> {each.after}" for each in best.drawbacks[:_DRAWBACKS])
