@@ -21,7 +21,7 @@ from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import read_description
 from amalthea_uros.uros.assemble import Assembly, assemble
 from amalthea_uros.uros.colcon_meta import parse_meta
-from amalthea_uros.uros.generated_files import MARK, CodeWishes, generated_memory, generated_storage, texts_of
+from amalthea_uros.uros.generated_files import MARK, CodeWishes, code_findings, generated_memory, generated_storage, texts_of
 from amalthea_uros.uros.generated_options import check_meta
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.memory_findings import exceeded_memory
@@ -44,6 +44,7 @@ class GenerateResult(Brief, Shown):
     folder : where the files are; None if they were not written
     texts : their contents, by name
     memory : with the options in them
+    omissions : about what the description states and the code does not have; none if no code is written
     """
 
     description: Path
@@ -51,11 +52,13 @@ class GenerateResult(Brief, Shown):
     assembly: Assembly
     texts: Mapping[str, str]
     memory: MemoryDemand
+    omissions: tuple[Finding, ...] = ()
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Warnings and notes about the description, except about sizes that the files set, and those that comments in it accept."""
         kept = [finding for finding in self.assembly.findings if finding.rule not in (*_SOLVED, _MEMORY)]
+        kept += self.omissions
         exceeded = exceeded_memory(self.memory, generated_storage(self.assembly), self.assembly.description.hardware)
         return unsuppressed(kept if exceeded is None else [*kept, exceeded])
 
@@ -109,7 +112,12 @@ def generate(
     wishes = CodeWishes(reconnects=reconnect, stamps=stamps) if code or reconnect or stamps else None
     texts = texts_of(assembly, wishes)
     result = GenerateResult(
-        description=Path(path), folder=target, assembly=assembly, texts=texts, memory=generated_memory(assembly)
+        description=Path(path),
+        folder=target,
+        assembly=assembly,
+        texts=texts,
+        memory=generated_memory(assembly),
+        omissions=code_findings(assembly, wishes),
     )
     if target is not None:
         files = {target / name: text for name, text in texts.items()}

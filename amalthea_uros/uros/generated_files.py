@@ -9,12 +9,14 @@ from dataclasses import replace
 from amalthea_uros._internal.ports import known_ports, parameter_services
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import resource_folder
+from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.firmware.code import code_texts, firmware_code
+from amalthea_uros.uros.firmware.omissions import omissions
 from amalthea_uros.uros.generated_options import values_of, with_generated_options
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.middleware.options import Option
@@ -101,6 +103,11 @@ def texts_of(assembly: Assembly, code: CodeWishes | None = None) -> dict[str, st
     constants = dict(zip(_handles(assembly), (constant for constant, _, _ in handles), strict=True))
     firmware = firmware_code(assembly.description, assembly.system, reconnects=code.reconnects, stamps=code.stamps)
     return texts | code_texts(firmware, environment, content | {"handle_constants": constants})
+
+
+def code_findings(assembly: Assembly, code: CodeWishes | None) -> tuple[Finding, ...]:
+    """About what the description states and the code does not have; nothing if no code is wanted."""
+    return () if code is None else tuple(omissions(assembly.description))
 
 
 def _kconfig(port: str | None, values: list[tuple[Option, int]]) -> list[tuple[str, str, Option]]:

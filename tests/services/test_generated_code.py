@@ -261,3 +261,14 @@ def test_what_has_no_code_is_refused(old, new, message, tmp_path):
         generate(app, tmp_path / "code", code=True)
     assert {each.rule for each in caught.value.findings if each.severity == "error"} == {"GEN010"}
     assert not (tmp_path / "code").exists()
+
+
+def test_what_is_stated_but_not_in_the_code_is_a_warning(tmp_path):
+    app = described("freertos", tmp_path)
+    app.write_text(app.read_text().replace("{name: on_mode,", "{name: on_mode, depth: 3, history: keep-all,"))
+    result = generate(app, tmp_path / "code", code=True)
+    found = [each.message for each in result.findings if each.rule == "GEN011"]
+    assert found == [
+        f"{key} is not in the code" for key in ("'depth' of 'on_mode'", "'history' of 'on_mode'", "'max_handles' of 'first'")
+    ]
+    assert [each for each in generate(app).findings if each.rule == "GEN011"] == []
