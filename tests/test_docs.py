@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from command import warm_up
@@ -104,6 +105,11 @@ def test_the_sample_is_what_its_script_builds(tmp_path):
 def test_the_picture_shows_what_is_printed(picture, command, tmp_path):
     subprocess.run([sys.executable, ROOT / "tools" / "draw_terminal.py", tmp_path / picture, *command], check=True)
     assert (tmp_path / picture).read_text() == (ROOT / "docs" / "images" / picture).read_text()
+
+
+def test_every_picture_can_be_drawn():
+    for picture in sorted((ROOT / "docs").rglob("*.svg")):
+        ElementTree.parse(picture)
 
 
 def test_the_gantt_chart_is_what_the_command_draws(samples):

@@ -40,7 +40,7 @@ LINES = {
     "names": 17,
     "perf": 1703,
     "platforms": 0,
-    "report": 8588,
+    "report": 8595,
     "services": 2601,
     "simulate": 8584,
     "source": 2970,

@@ -136,3 +136,19 @@ def test_a_remark_has_one_number_in_all_tables():
     for _ in range(2):
         terminal.table(("task", "reason"), [(name, REASON) for name in "ABC"])
     assert stream.getvalue().count(REASON) == 1
+
+
+def test_a_line_that_fits_keeps_its_blanks_and_each_other_line_its_style(columns, monkeypatch):
+    columns(20)
+    monkeypatch.delenv("NO_COLOR")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    stream = Screen()
+    terminal = Terminal(stream)
+    terminal.line("  a   b      12")
+    terminal.line(terminal.style("a heading of more than one line", "1"))
+    bold, end = "\x1b[1m", "\x1b[0m"
+    assert stream.getvalue().splitlines() == [
+        "  a   b      12",
+        f"{bold}a heading of more{end}",
+        f"  {bold}than one line{end}",
+    ]

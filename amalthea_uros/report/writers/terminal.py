@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
 from typing import IO
@@ -203,7 +203,9 @@ def _is_for_pipes(stream: IO[str]) -> bool:
 
 
 def wrapped(text: str, width: int) -> list[str]:
-    """A text in lines; those after the first are indented more, and names stay whole."""
+    """A text in lines; those after the first are indented more, names stay whole, and a style ends and begins again with each line."""
+    if len(_STYLES.sub("", text)) <= width:
+        return [text]
     indent = len(text) - len(text.lstrip())
     found, length = [" " * indent], indent - 1
     for word in map(unglued, glued(text).split()):
@@ -213,7 +215,18 @@ def wrapped(text: str, width: int) -> list[str]:
             length = indent + GAP - 1
         found[-1] += f" {word}" if found[-1].strip() else word
         length += 1 + size
-    return found
+    return list(_each_styled(found))
+
+
+def _each_styled(lines: Iterable[str]) -> Iterator[str]:
+    """The lines of a text, of which each has the style that is on: logs and pictures have lines, not the state of a terminal."""
+    style, end = "", f"{_STYLE}0m"
+    for line in lines:
+        body = line.lstrip()
+        styles = _STYLES.findall(line)
+        before, style = style, (styles[-1] if styles else style)
+        style = "" if style == end else style
+        yield f"{line[: len(line) - len(body)]}{before}{body}{end if style else ''}"
 
 
 def _excerpt(text: str, column: int, room: int) -> tuple[str, int]:
