@@ -14,10 +14,13 @@ UNTIL_WAIT, UNTIL_CHECK, PERIOD = 10, 2, 20
 COUNT, LAST, IDLE = 60, 20, 5
 
 
-def longest_storage(arrivals, draw, *, until_wait=UNTIL_WAIT, until_check=UNTIL_CHECK, timeout=1000, takes=lambda number: True):
+def longest_storage(
+    arrivals, draw, *, until_wait=UNTIL_WAIT, until_check=UNTIL_CHECK, timeout=1000, takes=lambda number: True, always=False
+):
     """The longest time from an arrival to the check that takes the message, of an executor whose callbacks read all before they end.
 
-    Iterations without a callback are as long as `IDLE`. The last messages do not count: nothing ends the waits after them.
+    Iterations without a callback are as long as `IDLE`; there are none if it is always called. The last messages do not count: nothing
+    ends the waits after them.
     """
     coming, unread, stored, times = sorted(arrivals), [], [], []
     wait = number = 0
@@ -30,10 +33,11 @@ def longest_storage(arrivals, draw, *, until_wait=UNTIL_WAIT, until_check=UNTIL_
             check = min([wait + timeout, *coming[:1]])
             stored += [coming.pop(0) for _ in range(sum(time <= check for time in coming))]
         check, number = check + draw(until_check), number + 1
-        if not stored or not takes(number):
+        if stored and takes(number):
+            times.append(check - stored.pop(0))
+        elif not always:
             wait = check + draw(IDLE - until_check)
             continue
-        times.append(check - stored.pop(0))
         published = check + draw(until_wait)
         stored += unread + [coming.pop(0) for _ in range(sum(time <= published for time in coming))]
         unread, wait = [], published + draw(check + until_wait - published)
@@ -49,7 +53,8 @@ def conditions(*, jitter=0, timeout=1000, is_only=True, **change):
         "until_timeout": UNTIL_WAIT + UNTIL_CHECK + timeout,
         "age": UNTIL_WAIT + UNTIL_CHECK,
         "gaps": (PERIOD + jitter,),
-        "idle": IDLE if is_only else None,
+        "is_alone": is_only,
+        "idle": IDLE,
     }
     return StorageConditions(**found | change)
 
@@ -67,12 +72,12 @@ BEHIND = [time + 37 for time in late([6, *[0] * (COUNT - 1)])]
 
 
 @examples(300)
-@given(st.integers(0, 30), st.integers(1, 100), st.booleans(), st.integers(0, 2**32))
-def test_no_message_is_stored_longer_than_its_bound(jitter, timeout, is_only, seed):
+@given(st.integers(0, 30), st.integers(1, 100), st.booleans(), st.booleans(), st.integers(0, 2**32))
+def test_no_message_is_stored_longer_than_its_bound(jitter, timeout, is_only, always, seed):
     random = Random(seed)
-    bound = conditions(jitter=jitter, timeout=timeout, is_only=is_only, room=COUNT).longest.most
+    bound = conditions(jitter=jitter, timeout=timeout, is_only=is_only, room=COUNT, idle=None if always else IDLE).longest.most
     arrivals = late(random.randint(0, jitter) for _ in range(COUNT))
-    assert longest_storage(arrivals, lambda most: random.randint(0, most), timeout=timeout) <= bound
+    assert longest_storage(arrivals, lambda most: random.randint(0, most), timeout=timeout, always=always) <= bound
 
 
 def test_messages_that_are_stored_once_stay_behind():
@@ -105,3 +110,11 @@ def test_without_room_for_each_iteration_more_and_more_are_stored():
 )
 def test_each_assumption_about_stored_messages_is_needed(arrivals, change):
     assert longest_storage(arrivals, longest, timeout=40, **change) > conditions(jitter=6).longest.most
+
+
+def test_a_callback_that_is_always_called_reads_messages_in_iterations_that_took_none():
+    # The first wait times out at 40; the callback publishes from 42 to 52, and reads the message of 45, which waits for that of 65.
+    arrivals = [time + 45 for time in late([0] * COUNT)]
+    assert longest_storage(arrivals, longest, timeout=40, always=True) == PERIOD + UNTIL_CHECK
+    assert conditions().longest.most == UNTIL_WAIT + UNTIL_CHECK
+    assert conditions(idle=None).longest.most == PERIOD + UNTIL_CHECK

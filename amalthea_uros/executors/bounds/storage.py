@@ -24,9 +24,10 @@ most L2 + G with the greatest distance G of two messages that come for certain, 
 handle is the only one of the executor, and waits last longer than B, they read until a message comes, and no message is in the backlog
 when nothing is taken: H = 0, so that n = 1, and the next message of the handle arrives after the wait has begun, and ends it.
 
-If it is the only one, and delta(2) > I + L2 with the longest cycle I without a callback, nothing is ever stored: a message that arrives
-in such a cycle is taken I later, and the next one arrives after the wait that follows has begun. Then it is taken after L2 at most, as
-any message of an executor that stores none.
+If it is the only one, called for messages only, and delta(2) > I + L2 with the longest cycle I without a callback, nothing is ever
+stored: a message that arrives in such a cycle is taken I later, and the next one arrives after the wait that follows has begun. Then it
+is taken after L2 at most, as any message of an executor that stores none. A handle that is called in each iteration publishes in those,
+too, and then reads the message that arrives in it.
 """
 
 from __future__ import annotations
@@ -77,8 +78,8 @@ class StorageConditions:
     until_timeout : longest time from a check to the next one, with the whole timeout between them; None if it is not bounded
     age : greatest age of the receive backlog
     gaps : greatest distances of messages that come for certain, of some handles of the executor
-    idle : longest cycle without a callback, if the executor has no other handle, and its waits cannot time out while they answer
-        what comes before a message; None otherwise
+    is_alone : whether the executor has no other handle, and its waits cannot time out while they answer what comes before a message
+    idle : longest cycle without a callback; None if each cycle can have one
     room : most messages that can be stored for the handle; None if nothing limits them
     """
 
@@ -88,6 +89,7 @@ class StorageConditions:
     until_timeout: Time | None
     age: Time
     gaps: Sequence[Time] = ()
+    is_alone: bool = False
     idle: Time | None = None
     room: int | None = None
 
@@ -98,10 +100,10 @@ class StorageConditions:
         until_next = [] if self.until_timeout is None else [self.until_timeout]
         # Distances of periodic events grow by the same, so that the condition holds for all m if it does for one.
         is_drained = self.events.delta_min(2) > length
-        if self.idle is not None and self.events.delta_min(2) > self.idle + length:
+        if self.is_alone and self.idle is not None and self.events.delta_min(2) > self.idle + length:
             why = "what is ready was fixed just before; publications store no message for it, as each arrives after the wait has begun"
             return Storage(most=length, why=why, is_stored=False)
-        if is_drained and self.idle is not None:
+        if is_drained and self.is_alone:
             until_next += self.gaps
             why = "a message that is stored is taken when the next one arrives, or the wait times out"
             return Storage(most=max(length, min(until_next) + self.until_check), why=why) if until_next else None
@@ -132,7 +134,8 @@ def storage_of(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | N
         until_timeout=cycle.longest_with(longest_wait(executor)),
         age=age,
         gaps=gaps,
-        idle=cycle.longest_without_call if executor.handles == (handle,) and until_check < longest_wait(executor) else None,
+        is_alone=executor.handles == (handle,) and until_check < longest_wait(executor),
+        idle=None if handle.always else cycle.longest_without_call,
         room=min((limit for limit in (handle.depth, executor.waiting.slots) if limit is not None), default=None),
     ).longest
 
