@@ -123,7 +123,9 @@ TO_HOST, RELAYS, RELAYS_END, STAMPS_FROM, STAMPS_FROM_END, STAMPS_TO, STAMPS_TO_
 FLOW, PARTS_OF = range(17, 19)
 # What loses it, how often that was, how often it was sent again; stages of which it keeps the values, and that respond at the host.
 LOSES, LOSES_END, LOST_ON_WIRE, SENT_AGAIN = range(19, 23)
-KEEPS, KEEPS_END, RESPONSES, RESPONSES_END, TRANSMISSION_SIZE = range(23, 28)
+KEEPS, KEEPS_END, RESPONSES, RESPONSES_END = range(23, 27)
+# Its delays on the line to the controller, which messages of a wire share, as none overtakes another one.
+DELAY_IN, TRANSMISSION_SIZE = range(27, 29)
 
 # Where messages wait to be read, and how many are kept for callbacks of at most so many.
 UNREAD_FIRST, UNREAD_LAST, KEPT, SLOTS, INBOX_SIZE = range(5)

@@ -23,7 +23,7 @@ from amalthea_uros.simulate.kernel.layout import *
 from amalthea_uros.simulate.kernel.losses import is_lost, lacks_loss_value
 from amalthea_uros.simulate.kernel.message_records import append, free_message, new_message
 from amalthea_uros.simulate.kernel.waiting import release, wait, wake
-from amalthea_uros.simulate.kernel.wires import delay, enter_wire, lacks_delay
+from amalthea_uros.simulate.kernel.wires import delay_by, enter_wire, lacks_value
 
 
 def ring(m: Memory, alarm: int) -> int:
@@ -100,7 +100,7 @@ def _leave_wire(m: Memory, transmission: int, message: int) -> int:
     if m[message + PARTS_IN_IT] == 0:
         free_message(m, message)
         return CONTINUE
-    code = lacks_delay(m, line_in) if line_in else CONTINUE
+    code = lacks_value(m, m[transmission + DELAY_IN]) if line_in else CONTINUE
     if code:
         return code
     for place in range(m[transmission + STAMPS_FROM], m[transmission + STAMPS_FROM_END], 2):
@@ -109,7 +109,7 @@ def _leave_wire(m: Memory, transmission: int, message: int) -> int:
         if m[message + ORIGINAL]:
             m[m[message + ORIGINAL] + CARRIED + m[place + 1]] = value
     if line_in:
-        delay(m, line_in, message)
+        delay_by(m, line_in, message, m[transmission + DELAY_IN])
         return CONTINUE
     if m[message + ORIGINAL]:
         code = hand_over(m, m[transmission + FLOW])

@@ -42,8 +42,13 @@ def draw_delay(m: Memory, stream: int) -> int:
 
 
 def delay(m: Memory, line: int, message: int) -> None:
-    """Put a message on a line, which none overtakes."""
-    due = m[NOW] + draw_delay(m, m[line + DELAY])
+    """Put a message on a line, with the delays of the line."""
+    delay_by(m, line, message, m[line + DELAY])
+
+
+def delay_by(m: Memory, line: int, message: int, stream: int) -> None:
+    """Put a message on a line, on which none overtakes another one, with a delay of a stream."""
+    due = m[NOW] + draw_delay(m, stream)
     alarm = m[line + ITS_ALARM]
     if m[line + FIRST_MESSAGE]:
         due = max(due, m[m[line + LAST_MESSAGE] + DUE])

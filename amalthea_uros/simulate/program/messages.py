@@ -49,6 +49,7 @@ class MessageRecords:
     lines : what delays messages, and alarms
     host : the executors of the host
     acknowledging_lines : by the name of the message with which the agent acknowledges
+    lines_in : the lines from the end of each wire, by the wire and what they lead to
     sent_again : reliable messages on wires of which it is stated how many they lose
     losses : the records of what loses messages, by wire
     """
@@ -64,6 +65,7 @@ class MessageRecords:
     host: HostRecords = field(init=False)
     from_host: set[str] = field(default_factory=set)
     acknowledging_lines: dict[str, int] = field(default_factory=dict)
+    lines_in: dict[tuple[str, int], int] = field(default_factory=dict)
     sent_again: set[str] = field(default_factory=set)
     losses: dict[tuple[str, Losses], int] = field(default_factory=dict)
     _receivers: dict[str, bool] | None = None
@@ -93,8 +95,8 @@ class MessageRecords:
         for executor in self.system.executors:
             slots = executor.waiting.slots
             inbox = self.image.record(layout.INBOX_SIZE, {layout.SLOTS: layout.NEVER if slots is None else slots})
-            # Who receives nothing reads nothing.
-            self.inboxes[executor.name] = sessions.setdefault(executor.session, inbox) if messages(executor) else inbox
+            # Who receives nothing reads while a publication of it waits, whatever comes.
+            self.inboxes[executor.name] = sessions.setdefault(executor.session, inbox)
             for handle in executor.handles:
                 self.handles[executor.name, handle.name] = self._handle(executor, handle)
         for transmission in self.system.transmissions.values():
@@ -152,7 +154,7 @@ class MessageRecords:
             fields[layout.HOLDS_WRITER] = int(wire.keeps_sender)
             if transmission.purpose is Purpose.ACKNOWLEDGEMENT:
                 arrives = self.lines.delay(f"to agent {transmission.name}", transmission.link)
-                fields[layout.LINE_IN] = self.line(transmission, arrives, layout.TO_AGENT_ITSELF)
+                fields |= self._line_in(transmission, arrives, layout.TO_AGENT_ITSELF)
             if transmission.purpose is Purpose.DATA and transmission.agent.simulated.most is not None:
                 fields[layout.TO_HOST] = self.lines.delay(f"to host {transmission.name}", transmission.link, transmission.agent)
         self.image.put(record, fields)
@@ -182,13 +184,8 @@ class MessageRecords:
     def _receiving(self, transmission: Transmission) -> dict[int, int]:
         """The fields of a transmission that the controller receives."""
         system = self.system
-        fields = {
-            layout.LINE_IN: self.line(
-                transmission,
-                self.lines.delay(f"receive {transmission.name}", transmission.link, transmission.driver),
-                layout.TO_RECEIVER,
-            )
-        }
+        arrives = self.lines.delay(f"receive {transmission.name}", transmission.link, transmission.driver)
+        fields = self._line_in(transmission, arrives, layout.TO_RECEIVER)
         received_by = self.receiving_stimulus(transmission)
         if received_by is not None:
             fields[layout.RECEIVED_BY] = self.resources.stimuli[received_by]
@@ -313,6 +310,12 @@ class MessageRecords:
         self.arrivals.append((record, times))
 
     # Lines.
+
+    def _line_in(self, transmission: Transmission, delay: int, leads_to: int) -> dict[int, int]:
+        """The fields of a transmission that say how its messages come from the wire: on the line that all of the wire share."""
+        if (transmission.wire, leads_to) not in self.lines_in:
+            self.lines_in[transmission.wire, leads_to] = self.lines.line_of(0, 0, leads_to)
+        return {layout.LINE_IN: self.lines_in[transmission.wire, leads_to], layout.DELAY_IN: delay}
 
     def line(self, transmission: Transmission, delay: int, leads_to: int) -> int:
         """A line of messages with a stream of delays."""
