@@ -152,7 +152,8 @@ def _activations(item: ScheduledProcess, output: Output, executors: ExecutorOccu
     longest = max_time(demand.worst, context.time_base(executor.task))
     if _has_effects(item, executors, context):
         late, deferred = executors.lateness[executor.task], why_deferred(executor)
-        reason = why_dense(executor, context.system.executors, longest) or (deferred if late is None else "")
+        can_overrun = executor.task in executors.overrunning
+        reason = why_dense(executor, context.system.executors, can_overrun=can_overrun) or (deferred if late is None else "")
         if reason:
             raise UnknownError(reason)
         if deferred and late:

@@ -321,20 +321,34 @@ class Cycle:
 
     def longest_with(self, wait: Time) -> Time | None:
         """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
-        part, suspended, beginning = self._of_thread, self._suspended(wait), self._beginning(wait)
-        if part.suspension.most is None or suspended is None or self.busy is None or beginning is None:
+        beginning = self._beginning(wait)
+        if self._of_thread.suspension.most is None or self.busy is None or beginning is None:
             return None
-        together, resumed = part.suspension.most + suspended, self._resumed(wait)
         match self.executor.loop.kind:
             case LoopKind.PERIODIC:
-                unslept = self.processor.time(part.demand, together, part.resumed + resumed)
-                slept = (self.executor.loop.period or 0) + SLEEP_RESOLUTION + beginning
+                unslept, slept = self._awake(wait), (self.executor.loop.period or 0) + SLEEP_RESOLUTION + beginning
                 return None if unslept is None else max(unslept, slept)
             case LoopKind.SLEEPING if self.sleep:
                 bounds = [] if self.others else [self.sleep + self.busy + beginning]
-                joint = self.processor.time(part.demand, together + self.sleep, part.resumed + 1 + resumed)
+                joint = self._awake(wait, self.sleep)
                 return min([*bounds, *([] if joint is None else [joint])], default=None)
-        return self.processor.time(part.demand, together, part.resumed + resumed)
+        return self._awake(wait)
+
+    def _awake(self, wait: Time, sleep: Time = 0) -> Time | None:
+        """The longest time for some wait and a whole iteration, and a sleep in it; None if it is not bounded."""
+        part, suspended = self._of_thread, self._suspended(wait)
+        if part.suspension.most is None or suspended is None:
+            return None
+        resumed = part.resumed + self._resumed(wait) + (1 if sleep else 0)
+        return self.processor.time(part.demand, part.suspension.most + suspended + sleep, resumed)
+
+    @property
+    def can_overrun(self) -> bool:
+        """Whether a wait and an iteration can take longer than the period of the loop."""
+        if self.executor.loop.kind is not LoopKind.PERIODIC:
+            return False
+        awake = self._awake(longest_wait(self.executor))
+        return awake is None or awake > (self.executor.loop.period or 0)
 
     @cached_property
     def _of_thread(self) -> IterationPart:

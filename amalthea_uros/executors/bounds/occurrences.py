@@ -58,11 +58,13 @@ class ExecutorOccurrences:
     sent : by the names of transmissions; None if that has no bound
     lateness : of the end of an iteration after what began it, by the names of tasks; None if that has no bound
     again : what is sent again besides, by the names of transmissions; None if that has no bound
+    overrunning : the tasks of loops of which a wait and an iteration can take longer than the period, or for an unknown time
     """
 
     sent: Mapping[str, EventModel | None] = field(default_factory=dict)
     lateness: Mapping[str, Time | None] = field(default_factory=dict)
     again: Mapping[str, EventModel | None] = field(default_factory=dict)
+    overrunning: frozenset[str] = frozenset()
 
 
 def least_occurrences(context: TimingContext) -> ExecutorOccurrences:
@@ -83,11 +85,13 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
     lateness: dict[str, Time | None] = {}
     times: list[Time | None] = []
     again: dict[str, EventModel | None] = {}
+    overrunning: set[str] = set()
     for executor in solved.context.system.executors:
         try:
             cycle = Cycle.of(executor, solved, sending)
         except UnknownError:
             lateness[executor.task] = None
+            overrunning.add(executor.task)
             again |= sent_again(solved, None, None, reads_in_waits=True)
             sent |= {each.transmission or "": None for handle in executor.handles for each in _sent_by(handle, solved.context)}
             times += [None] * reads_in_waits(executor)
@@ -95,6 +99,7 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
         results = [handle_result(handle, cycle, extra_jitter) for handle in executor.handles]
         again |= sent_again(solved, cycle.greatest_age, cycle.processor, reads_in_waits=reads_in_waits(executor))
         lateness[executor.task] = _lateness(cycle, results)
+        overrunning |= {executor.task} if cycle.can_overrun else set()
         times += [_until_acknowledged(cycle)] * reads_in_waits(executor)
         for handle, result in zip(executor.handles, results, strict=True):
             for publication in _sent_by(handle, solved.context):
@@ -103,7 +108,7 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
     late = None if None in times else max(filter(None, times), default=Time(0))
     arriving = acknowledged(solved)
     written = {name: _acknowledging(arriving[name], late) for name in _acknowledgements_of_executors(solved.context)}
-    return ExecutorOccurrences(sent=sent | written, lateness=lateness, again=again)
+    return ExecutorOccurrences(sent=sent | written, lateness=lateness, again=again, overrunning=frozenset(overrunning))
 
 
 def _published(publication: Publication, calls: EventModel | None, cycle: Cycle) -> Mapping[str, EventModel | None]:

@@ -69,7 +69,7 @@ class IterationDemand:
         foreign = demand(each for each in process.activities if isinstance(each, Call) and each.runnable not in own)
         return cls(
             spin=Interval(spin.lower, spin.upper + max(0, beside) + foreign.upper),
-            takes={handle.name: _NONE if handle.take is None else calls(handle.take) for handle in handles},
+            takes={handle.name: _taking(handle, calls(handle.take)) for handle in handles},
             callbacks={handle.name: calls(handle.runnable) for handle in handles},
             after=calls(executor.busy_wait),
         )
@@ -78,3 +78,8 @@ class IterationDemand:
         """Taking the message and calling back."""
         take, callback = self.takes[handle.name], self.callbacks[handle.name]
         return Interval(take.lower + callback.lower, take.upper + callback.upper)
+
+
+def _taking(handle: Handle, demand: Interval[Time]) -> Interval[Time]:
+    """What taking a message demands: a callback that is always called can be called without one."""
+    return Interval(Time(0), demand.upper) if handle.always else demand

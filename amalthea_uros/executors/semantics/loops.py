@@ -193,14 +193,14 @@ def why_deferred(executor: Executor) -> str:
     )
 
 
-def why_dense(executor: Executor, executors: Iterable[Executor], longest: Time) -> str:
+def why_dense(executor: Executor, executors: Iterable[Executor], *, can_overrun: bool) -> str:
     """Why it is unknown how close together the iterations of an executor can be; "" if its stimulus says it.
 
     A loop with a period catches up after an iteration that took longer, with iterations that follow each other as messages arrive.
 
     Parameters
     ----------
-    longest : longest execution time of an iteration
+    can_overrun : whether a wait and an iteration can take longer than the period of the loop
     """
     if min_pace(executor):
         return ""
@@ -210,7 +210,7 @@ def why_dense(executor: Executor, executors: Iterable[Executor], longest: Time) 
         return "its loop has no sleep, so that iterations follow each other after one that waited for others of its session"
     if executor.loop.kind is not LoopKind.PERIODIC:
         return ""
-    if longest_wait(executor) + longest > (executor.loop.period or 0):
+    if can_overrun:
         return (
             "a wait and an iteration can be longer than its period, so that iterations follow each other until it has caught up"
         )
