@@ -6,6 +6,7 @@
 import re
 
 import pytest
+import yaml
 from effort import every
 from opponent.executors.calls import different_calls
 from opponent.executors.claims import false_claims, runs_of
@@ -18,6 +19,7 @@ from amalthea_uros.units import MILLISECOND
 #: Of which the table in docs/simulation.md is made.
 SAMPLE = range(60)
 RUNS = runs_of(200 * MILLISECOND, [1])
+FOUND = sorted((ROOT / "tests" / "opponent" / "executors" / "found").glob("*.yaml"))
 PAGE = (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
 
 
@@ -50,3 +52,13 @@ def test_every_call_is_that_of_a_player():
     assert {seed: said for seed in every(10, range(40, 1040)) if (said := different_calls(seed, tally))} == {}
     assert tally.calls["executors"] > 50
     assert tally.calls["applications"] > 50
+
+
+@pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
+def test_what_was_once_said_falsely_of_a_description(path):
+    assert false_claims(yaml.safe_load(path.read_text()), runs=runs_of(300 * MILLISECOND, [1])) == []
+
+
+@pytest.mark.parametrize("seed", [5688, 6578], ids=["heartbeats-of-one-stream", "calls-without-take"])
+def test_what_was_once_said_falsely_of_a_random_description(seed):
+    assert false_claims(random_description(seed), runs=runs_of(500 * MILLISECOND, [])) == []

@@ -41,8 +41,10 @@ def false_claims(
 
     Parameters
     ----------
+    tally : counts what was examined, of descriptions with all sections of a random one
     heartbeats : whether they are simulated, too; they are analysed in any case
     """
+    constructs = () if tally is None else (*constructs_of(content), "all")
     tally = Tally() if tally is None else tally
     try:
         system = describe_content(content).assembly.system
@@ -62,7 +64,6 @@ def false_claims(
             greatest[name] = max(seen.max, greatest.get(name, (Fraction(0),))[0]), bound.most
         if options.mode is SimulationMode.BEST:
             tally.left_out.update({each.reason.partition("'")[0] for each in simulation.left_out})
-    constructs = (*constructs_of(content), "all")
     for name, (most, bound) in greatest.items():
         tally.add((*constructs, f"quantity: {name.partition(' of ')[0]}"), most, bound)
     tally.verdicts.update(
