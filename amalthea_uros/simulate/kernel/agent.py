@@ -21,7 +21,7 @@ from amalthea_uros.simulate.kernel.layout import *
 from amalthea_uros.simulate.kernel.losses import is_lost, lacks_loss_value
 from amalthea_uros.simulate.kernel.message_records import append, carry, copy_of, free_message, new_message, parts_of
 from amalthea_uros.simulate.kernel.stages import observe_response
-from amalthea_uros.simulate.kernel.wires import bring, delay, draw_delay, enter_wire, lacks_delay, lacks_value
+from amalthea_uros.simulate.kernel.wires import bring, delay, delay_from, enter_wire, lacks_delay, lacks_value, reach_host
 
 
 def send(m: Memory, message: int) -> int:
@@ -93,16 +93,14 @@ def hand_over(m: Memory, flow: int) -> int:
 def _hand_over(m: Memory, message: int) -> int:
     transmission = m[message + SENT_AS]
     code = lacks_to_relay(m, transmission)
-    is_response = m[transmission + RESPONSES] != m[transmission + RESPONSES_END]
-    if code == 0 and is_response:
+    if code == 0:
         code = lacks_value(m, m[transmission + TO_HOST])
     if code:
         return code
-    relay(m, transmission, message)
-    if is_response:
-        at_host = m[NOW] + draw_delay(m, m[transmission + TO_HOST])
-        for place in range(m[transmission + RESPONSES], m[transmission + RESPONSES_END], 2):
-            observe_response(m, m[place], at_host, m[message + CARRIED + m[place + 1]])
+    at_host = reach_host(m, transmission)
+    relay(m, transmission, message, at_host)
+    for place in range(m[transmission + RESPONSES], m[transmission + RESPONSES_END], 2):
+        observe_response(m, m[place], at_host, m[message + CARRIED + m[place + 1]])
     return CONTINUE
 
 
@@ -119,12 +117,13 @@ def lacks_to_relay(m: Memory, transmission: int) -> int:
     return CONTINUE
 
 
-def relay(m: Memory, transmission: int, message: int) -> None:
-    """The agent sends a message back that somebody here has subscribed to."""
+def relay(m: Memory, transmission: int, message: int, at_host: int) -> None:
+    """The agent sends a message back that somebody here has subscribed to, from the time at which the host has it."""
     for place in range(m[transmission + RELAYS], m[transmission + RELAYS_END]):
         copy = new_message(m, m[m[place] + CREATES])
         carry(m, message, copy)
-        delay(m, m[place], copy)
+        m[copy + BORN] = at_host
+        delay_from(m, m[place], copy, at_host, m[m[place] + DELAY])
 
 
 # What is missing.

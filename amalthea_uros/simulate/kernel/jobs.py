@@ -22,7 +22,7 @@ from amalthea_uros.simulate.kernel.reading import HAS_TO_WAIT, IS_DONE, has_to_w
 from amalthea_uros.simulate.kernel.reports import begin_execution, end_execution, observe, report_access, report_execution
 from amalthea_uros.simulate.kernel.stages import follow
 from amalthea_uros.simulate.kernel.waiting import await_events, change_events, request, serve, unlock
-from amalthea_uros.simulate.kernel.wires import draw_delay, keep_values, restore_values
+from amalthea_uros.simulate.kernel.wires import keep_values, lacks_value, reach_host, restore_values
 
 #: Who does more at one instant does not end.
 MOST_STEPS = 10_000_000
@@ -247,11 +247,10 @@ def _communicate(m: Memory, core: int, process: int, at: int) -> int:
     elif operation == PLAN_ITERATION:
         code = plan_iteration(m, process, first)
     elif operation == DEPART:
-        stream = m[first + TO_HOST]
-        if m[stream + STREAM_AT] == m[stream + STREAM_END]:
-            m[CAUSE] = stream
-            return STREAM_EMPTY + 1
-        m[process + AT_HOST] = m[NOW] + draw_delay(m, stream)
+        code = lacks_value(m, m[first + TO_HOST])
+        if code:
+            return code + 1
+        m[process + AT_HOST] = reach_host(m, first)
     elif operation == PASS_ON:
         code = pass_on(m, process, first)
     elif operation == HAVE_READ:

@@ -23,7 +23,7 @@ from amalthea_uros.simulate.kernel.layout import *
 from amalthea_uros.simulate.kernel.losses import is_lost, lacks_loss_value
 from amalthea_uros.simulate.kernel.message_records import append, free_message, new_message
 from amalthea_uros.simulate.kernel.waiting import release, wait, wake
-from amalthea_uros.simulate.kernel.wires import delay_by, enter_wire, lacks_value
+from amalthea_uros.simulate.kernel.wires import delay_from, enter_wire, lacks_value
 
 
 def ring(m: Memory, alarm: int) -> int:
@@ -83,7 +83,7 @@ def has_arrived(m: Memory, process: int) -> bool:
 def pass_on(m: Memory, process: int, transmission: int) -> int:
     """A message has left the wire, and continues from there if it is not lost."""
     if m[process + ITS_MESSAGE]:
-        code = _leave_wire(m, transmission, m[process + ITS_MESSAGE])
+        code = _leave_wire(m, transmission, m[process + ITS_MESSAGE], m[process + AT_HOST])
         if code:
             return code
     m[transmission + DONE_WRITING] += 1
@@ -95,7 +95,7 @@ def pass_on(m: Memory, process: int, transmission: int) -> int:
     return CONTINUE
 
 
-def _leave_wire(m: Memory, transmission: int, message: int) -> int:
+def _leave_wire(m: Memory, transmission: int, message: int, at_host: int) -> int:
     line_in = m[transmission + LINE_IN]
     if m[message + PARTS_IN_IT] == 0:
         free_message(m, message)
@@ -109,14 +109,14 @@ def _leave_wire(m: Memory, transmission: int, message: int) -> int:
         if m[message + ORIGINAL]:
             m[m[message + ORIGINAL] + CARRIED + m[place + 1]] = value
     if line_in:
-        delay_by(m, line_in, message, m[transmission + DELAY_IN])
+        delay_from(m, line_in, message, m[NOW], m[transmission + DELAY_IN])
         return CONTINUE
     if m[message + ORIGINAL]:
         code = hand_over(m, m[transmission + FLOW])
     else:
         code = lacks_to_relay(m, transmission)
         if code == 0:
-            relay(m, transmission, message)
+            relay(m, transmission, message, at_host)
     if code == 0:
         free_message(m, message)
     return code

@@ -41,14 +41,20 @@ def draw_delay(m: Memory, stream: int) -> int:
     return value
 
 
+def reach_host(m: Memory, transmission: int) -> int:
+    """When the host gets a message that is at the end of the wire now: in their order."""
+    m[transmission + LAST_AT_HOST] = max(m[transmission + LAST_AT_HOST], m[NOW] + draw_delay(m, m[transmission + TO_HOST]))
+    return m[transmission + LAST_AT_HOST]
+
+
 def delay(m: Memory, line: int, message: int) -> None:
-    """Put a message on a line, with the delays of the line."""
-    delay_by(m, line, message, m[line + DELAY])
+    """Put a message on a line now, with the next delay of the line."""
+    delay_from(m, line, message, m[NOW], m[line + DELAY])
 
 
-def delay_by(m: Memory, line: int, message: int, stream: int) -> None:
-    """Put a message on a line, on which none overtakes another one, with a delay of a stream."""
-    due = m[NOW] + draw_delay(m, stream)
+def delay_from(m: Memory, line: int, message: int, since: int, stream: int) -> None:
+    """Put a message on a line, on which none overtakes another one, with a delay of a stream that begins at some time."""
+    due = since + draw_delay(m, stream)
     alarm = m[line + ITS_ALARM]
     if m[line + FIRST_MESSAGE]:
         due = max(due, m[m[line + LAST_MESSAGE] + DUE])

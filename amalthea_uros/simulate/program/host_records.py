@@ -177,8 +177,8 @@ class HostRecords:
         """The lines from the agent to the subscriptions of a message of a controller."""
         if not self.is_simulated:
             return []
-        topic, agent = plain_topic(transmission.topic), transmission.agent
-        return [self._line(each, topic, transmission.link, agent) for each in self._subscribing(topic)]
+        topic = plain_topic(transmission.topic)
+        return [self._line(each, topic) for each in self._subscribing(topic)]
 
     def publications(self, callback: HostCallback, transmissions: dict[str, int]) -> Iterator[int]:
         """The records of what a callback publishes at its end: one for each subscription, and each message to a controller."""
@@ -212,11 +212,11 @@ class HostRecords:
     def _latency(self, topic: str) -> Span:
         return next(each.latency for each in self.resources.context.system.host.topics if each.name == topic)
 
-    def _line(self, callback: HostCallback, topic: str, *before: Span) -> int:
+    def _line(self, callback: HostCallback, topic: str) -> int:
         latency = self._latency(topic)
         if latency.most != latency.least:
             self.resources.context.notes.assume(_TOPICS)
-        delay = self.lines.delay(f"topic {topic} to {callback.name}", *before, latency)
+        delay = self.lines.delay(f"topic {topic} to {callback.name}", latency)
         return self.lines.line_of(self.queues[callback.name], delay, layout.TO_HOST_QUEUE)
 
     def _bring(self, callback: HostCallback) -> None:

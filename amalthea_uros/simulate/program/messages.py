@@ -154,7 +154,7 @@ class MessageRecords:
             if transmission.purpose is Purpose.ACKNOWLEDGEMENT:
                 arrives = self.lines.delay(f"to agent {transmission.name}", transmission.link)
                 fields |= self._line_in(transmission, arrives, layout.TO_AGENT_ITSELF)
-            if transmission.purpose is Purpose.DATA and transmission.agent.simulated.most is not None:
+            if transmission.purpose is Purpose.DATA:
                 fields[layout.TO_HOST] = self.lines.delay(f"to host {transmission.name}", transmission.link, transmission.agent)
         self.image.put(record, fields)
         if isinstance(system.stimuli_by_name[stimulus], InterProcess):
@@ -165,11 +165,7 @@ class MessageRecords:
             self._bring(transmission, system.stimuli_by_name[stimulus])
         self._acknowledge(transmission)
         lines = [
-            self.line(
-                relay,
-                self.lines.delay(f"relay {relay.name}", transmission.link, transmission.agent, relay.agent),
-                layout.TO_WIRE,
-            )
+            self.line(relay, self.lines.delay(f"relay {relay.name}", relay.agent), layout.TO_WIRE)
             for relay in self._relays(transmission)
         ]
         first, end = self.image.items([*lines, *self.host.receiving_lines(transmission)])
