@@ -59,6 +59,8 @@ def test_what_was_once_said_falsely_of_a_description(path):
     assert false_claims(yaml.safe_load(path.read_text()), runs=runs_of(300 * MILLISECOND, [1])) == []
 
 
-@pytest.mark.parametrize("seed", [5688, 6578], ids=["heartbeats-of-one-stream", "calls-without-take"])
+@pytest.mark.parametrize(
+    "seed", [5688, 6578, 10012, 10177], ids=["one-stream", "without-take", "back-from-the-agent", "timeouts"]
+)
 def test_what_was_once_said_falsely_of_a_random_description(seed):
     assert false_claims(random_description(seed), runs=runs_of(500 * MILLISECOND, [])) == []

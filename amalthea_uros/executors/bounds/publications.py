@@ -120,6 +120,9 @@ def _until_acknowledged(
     most = _lesser(
         None if known is None else _with_writes(known, session, arrivals, solved), _until_timeout(publication, solved)
     )
+    if publication.timeout is not None:
+        # Its timeout can pass while the driver still has the message.
+        least = min(least, publication.timeout)
     if recovers(publication, solved.context.system):
         # It returns at once if the client still keeps as many messages as it can.
         least = Time(0)

@@ -124,7 +124,8 @@ FLOW, PARTS_OF = range(17, 19)
 # What loses it, how often that was, how often it was sent again; stages of which it keeps the values, and that respond at the host.
 LOSES, LOSES_END, LOST_ON_WIRE, SENT_AGAIN = range(19, 23)
 KEEPS, KEEPS_END, RESPONSES, RESPONSES_END = range(23, 27)
-# Its delays on the line to the controller, which messages of a wire share, as none overtakes another one; when the host had the last one.
+# Its delays on the line to the controller, which messages of a wire share, as none overtakes another one. When the host had the last
+# one that went there.
 DELAY_IN, LAST_AT_HOST, TRANSMISSION_SIZE = range(27, 30)
 
 # Where messages wait to be read, and how many are kept for callbacks of at most so many.
