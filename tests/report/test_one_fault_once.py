@@ -40,6 +40,17 @@ class TestFindingsOfAKind:
     def test_others_are_of_another_kind(self, other):
         assert len(written(*map(finding, range(3)), *(finding(line, **other) for line in range(3, 6)))) == 6
 
+    def test_a_long_reason_is_written_once(self):
+        reason = "how much later one message is sent than another is not stated"
+        one, other = written(*(finding(line, message=f"the pattern of 'T' is unknown: {reason}") for line in (1, 2)))
+        assert one.endswith(f"'T1' is unknown: {reason}")
+        assert other.endswith("'T2' is unknown: for the same reason")
+
+    def test_a_quoted_value_is_no_reason(self):
+        rest = "polling', the processor is busy while a message is on the line"
+        lines = written(*(finding(line, message=f"with '{key}: {rest}") for line, key in enumerate(("write", "read"))))
+        assert lines[1].endswith(f"with 'read: {rest}")
+
 
 def test_a_report_begins_with_each_cause_once():
     text = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text()

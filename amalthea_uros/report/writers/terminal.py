@@ -45,7 +45,9 @@ def kind_of_message(finding: Finding) -> tuple[str, Severity, str, str, Path | N
 def _without_reason_of(before: Finding, finding: Finding) -> Finding:
     """A finding with a word in place of a long reason that the one before it has, too."""
     what, _, reason = finding.message.partition(": ")
-    is_repeated = len(reason) > _LONG_REASON and before.message.partition(": ")[2] == reason
+    # A colon in a quoted value is none of the message.
+    is_whole = what.count("'") % 2 == 0
+    is_repeated = is_whole and len(reason) > _LONG_REASON and before.message.partition(": ")[2] == reason
     return replace(finding, message=f"{what}: for the same reason") if is_repeated else finding
 
 
