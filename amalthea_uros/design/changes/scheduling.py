@@ -16,12 +16,13 @@ from amalthea_uros.design.changes.key import (
     Key,
     duration,
     positive_duration,
+    unused,
     whole_number,
 )
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
-from amalthea_uros.perf.os import SERVERS, Parameter, Parent, Scheduler
+from amalthea_uros.perf.os import SERVERS, OperatingSystem, Parameter, Parent, Scheduler
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.ranks import ANALYSED, CAPACITY, PERIOD
@@ -58,24 +59,19 @@ class _Dispatchers:
         allocations = getattr(system.mapping, self.place.collection)
         return [getattr(each, self.field) for each in allocations if getattr(each, self.place.identifier) == process]
 
-    def _present(self, system: System, process: str) -> str:
-        """What dispatches a process."""
+    def _present(self, system: System, process: str) -> str | None:
+        """What dispatches a process, if anything does."""
         found = self._allocations(system, process)
-        if len(found) != 1:
-            mapped = f"mapped to several {self.kind}s" if found else f"not mapped to any {self.kind}"
-            raise InvalidArgumentError(f"{process!r} is {mapped}")
-        return found[0]
+        if len(found) > 1:
+            raise InvalidArgumentError(f"{process!r} is mapped to several {self.kind}s")
+        return found[0] if found else None
 
     def _show(self, configuration: Configuration, process: str) -> str:
         return ", ".join(self._allocations(configuration.system, process)) or UNSET
 
     def _set(self, configuration: Configuration, process: str, name: str) -> Configuration:
         """Map a process, or map it to something else, without a preference for one of its cores."""
-        system = configuration.system
-        require(self.kind, [name], self.names(system))
-        if not self._allocations(system, process):
-            return configuration._replace(system=self.place.with_item(system, self.allocation(process, name)))
-        self._present(system, process)
+        require(self.kind, [name], self.names(configuration.system))
         return self._mapped(configuration, process, name, ())
 
     def _set_core(self, configuration: Configuration, process: str, core: str) -> Configuration:
@@ -84,7 +80,7 @@ class _Dispatchers:
         present = self._present(system, process)
         require("core", [core], system.cores)
         responsible = [each for each in self.names(system) if self._can_select(each, core, system)]
-        name = present if present in responsible else self._only(responsible, process, core)
+        name = present if present is not None and present in responsible else self._only(responsible, process, core)
         return self._mapped(configuration, process, name, (core,) if len(self.cores(name, system)) > 1 else ())
 
     def _can_select(self, name: str, core: str, system: System) -> bool:
@@ -93,15 +89,19 @@ class _Dispatchers:
 
     def _only(self, responsible: list[str], process: str, core: str) -> str:
         if not responsible:
-            raise InvalidArgumentError(f"no {self.kind} is responsible for the core {core!r}")
+            advice = f"; state its policy, e.g. {core}.policy=FixedPriorityPreemptive" if self.has_affinity else ""
+            raise InvalidArgumentError(f"no {self.kind} is responsible for the core {core!r}{advice}")
         if len(responsible) > 1:
             choices = ", ".join(f"{process}.{self.field}={name}" for name in responsible)
             raise InvalidArgumentError(f"several {self.kind}s are responsible for the core {core!r}; choose one: {choices}")
         return responsible[0]
 
     def _mapped(self, configuration: Configuration, process: str, name: str, cores: tuple[str, ...]) -> Configuration:
+        system = configuration.system
         fields: dict[str, Any] = {self.field: name, **({"cores": cores} if self.has_affinity else {})}
-        return configuration._replace(system=self.place.with_fields(configuration.system, process, **fields))
+        if self._present(system, process) is None:
+            system = self.place.with_item(system, self.allocation(process, name))
+        return configuration._replace(system=self.place.with_fields(system, process, **fields))
 
 
 def _show_core(configuration: Configuration, process: str) -> str:
@@ -215,6 +215,31 @@ def _set_policy(configuration: Configuration, name: str, policy: str) -> Configu
     return _with_scheduler(configuration, replace(configuration.system.schedulers[name], policy=policy))
 
 
+def _top_schedulers(core: str, system: System) -> list[Scheduler]:
+    """The schedulers that decide for a core, without those below them."""
+    return [each for each in system.schedulers.values() if each.parent is None and core in each.cores]
+
+
+def _show_core_policy(configuration: Configuration, core: str) -> str:
+    return ", ".join(each.policy or UNSET for each in _top_schedulers(core, configuration.system)) or UNSET
+
+
+def _set_core_policy(configuration: Configuration, core: str, policy: str) -> Configuration:
+    """Change the policy of the scheduler of a core, or add one, with an operating system of its own."""
+    system = configuration.system
+    require("core", [core], system.cores)
+    present = _top_schedulers(core, system)
+    if len(present) > 1:
+        choices = ", ".join(f"{each.name}.policy={policy}" for each in present)
+        raise InvalidArgumentError(f"several schedulers are responsible for the core {core!r}; choose one: {choices}")
+    if present:
+        return _set_policy(configuration, present[0].name, policy)
+    name = unused(f"{core}_scheduler", (*system.schedulers, *(each.name for each in system.os.systems)))
+    added = OperatingSystem(name=name, schedulers=(Scheduler(name=name, policy=policy, cores=(core,), executing_core=core),))
+    return configuration._replace(system=OPERATING_SYSTEMS.with_item(system, added))
+
+
+CORE_POLICY = Key(_policy, _show_core_policy, _set_core_policy)
 SCHEDULER_KEYS: dict[str, Key[Any]] = {
     "policy": Key(_policy, _show_policy, _set_policy),
     "priority": _parent_key("priority", whole_number, str),

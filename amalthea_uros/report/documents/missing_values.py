@@ -22,11 +22,12 @@ def missing_section(result: AnalysisResult) -> Section:
     """The command to paste; empty if nothing is missing that can be stated."""
     if result.missing is None:
         return section(_HEADING)
-    if result.missing.lacks_schedulers:
-        return section(_HEADING, lines(_NO_SCHEDULERS))
+    unallocated = [lines(_NO_SCHEDULERS)] if result.missing.lacks_schedulers else []
+    if not result.missing.changes:
+        return section(_HEADING, *unallocated)
     number = counted(len(result.missing.gained), "more process")
     said = f"These values are examples; with yours in their place, {number} can have a response time:"
-    return section(_HEADING, lines(said), Listing("", list(_command(result, result.missing))))
+    return section(_HEADING, *unallocated, lines(said), Listing("", list(_command(result, result.missing))))
 
 
 def _command(result: AnalysisResult, missing: MissingValues) -> Iterator[str]:
