@@ -24,15 +24,17 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.scheduling.allocation import scheduler_cores
+from amalthea_uros.timing.scheduling.allocation import scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 #: Examples: a value that is accepted, and which nobody takes for that of his system.
-_PERIOD, _DEADLINE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "100MHz", "1000ticks"
+_PERIOD, _DEADLINE, _TIME_SLICE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "1ms", "100MHz", "1000ticks"
 #: For models without hardware: so that the tasks of a small one fit on it.
 _CORE, _CORE_FREQUENCY = "CPU", "1GHz"
 #: What a process needs in any case if the changes give it a response time: nothing dispatched or activated it without them.
 _INDISPENSABLE = ("core", "scheduler", "period")
+#: A policy whose name says nothing.
+_WITHOUT_MEANING = "UserSpecificSchedulingAlgorithm"
 #: One statement can show that another one is needed: an allocated task needs a priority.
 _ROUNDS = 4
 #: Analyses of so many processes in all are tried, so that the proposal takes no longer than the analysis of a large model.
@@ -183,8 +185,10 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
     if lone is not None:
         yield Change(lone, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
     for name, scheduler in context.system.schedulers.items():
-        if scheduler.policy is None:
+        if scheduler.policy is None or scheduler.policy == _WITHOUT_MEANING:
             yield Change(name, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
+        if standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
+            yield Change(name, "time_slice", _TIME_SLICE)
     yield from _priorities(analysis)
     for name, process in context.system.processes.items():
         if name in bounded:

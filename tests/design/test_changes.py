@@ -57,6 +57,7 @@ SYSTEM = System(
                 name="OS",
                 schedulers=(
                     *(scheduler("S0", "C0"), scheduler("S1", "C1", "C2"), scheduler("S2", "C2")),
+                    os.Scheduler(name="Round", policy=os.Policy.PRIORITY_BASED_ROUND_ROBIN),
                     os.Scheduler(
                         name="Server",
                         policy=os.Policy.DEFERRABLE_SERVER,
@@ -151,6 +152,8 @@ VALUES = {
     "gear.mode=second": ("first", "second"),
     "number.mode=-3/2": ("1", "-3/2"),
     "Server.policy=PollingPeriodicServer": ("DeferrableServer", "PollingPeriodicServer"),
+    "A.time_slice=1ms": ("not set", "1 ms"),
+    "Round.time_slice=2ms": ("not set", "2 ms"),
     "Server.capacity=3ms": ("2 ms", "3 ms"),
     "Server.budget=3ms": ("2 ms", "3 ms"),
     "Server.period=8ms": ("9 ms", "8 ms"),
@@ -233,6 +236,8 @@ WRONG = {
     "number.mode=one": "'one' is not a number",
     "S0.period=1ms": "its policy FixedPriorityPreemptive is not that of a server",
     "S0.priority=1": "'S0' has no parent",
+    "Free.time_slice=1ms": "'Free' is not mapped to a scheduler, so it has no time slice",
+    "S0.time_slice=1ms": "its policy FixedPriorityPreemptive is not PriorityBasedRoundRobin",
 }
 
 

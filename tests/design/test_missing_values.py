@@ -150,3 +150,21 @@ def test_a_distribution_without_a_least_value_is_replaced_too():
         policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
     )
     assert proposed(system) == ({"B.execution_time"}, ("A", "B"))
+
+
+def test_a_policy_without_a_meaning_and_time_slices_are_stated():
+    # Of two tasks of 10 us with slices of 1 s, each waits for one job of the other one: 20 us; the policy decides which are stated.
+    for policy, stated in (
+        ("UserSpecificSchedulingAlgorithm", {"core.policy"}),
+        (Policy.PRIORITY_BASED_ROUND_ROBIN, {"core.time_slice"}),
+    ):
+        system = of_parts(
+            [task("A", "tick"), task("B", "tick")],
+            [TaskAllocation(task=name, scheduler="core", priority=1) for name in "AB"],
+            [Periodic(name="tick", period=MS)],
+            policy=policy,
+        )
+        assert proposed(system) == (stated, ("A", "B"))
+        changes = missing_values(system, Settings(), analyze_system(system, Settings())).changes
+        after = analyze_system(*apply(system, Settings(), changes))
+        assert {process.wcrt for process in after.processes} == {20 * MS // 1000}
