@@ -21,7 +21,9 @@ from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.activations import spare_stimulus
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import scheduler_cores, standard_policy
@@ -32,7 +34,7 @@ _PERIOD, _DEADLINE, _TIME_SLICE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "1ms"
 #: For models without hardware: so that the tasks of a small one fit on it.
 _CORE, _CORE_FREQUENCY = "CPU", "1GHz"
 #: What a process needs in any case if the changes give it a response time: nothing dispatched or activated it without them.
-_INDISPENSABLE = ("core", "scheduler", "period")
+_INDISPENSABLE = ("core", "scheduler", "period", "stimulus")
 #: A policy whose name says nothing.
 _WITHOUT_MEANING = "UserSpecificSchedulingAlgorithm"
 #: One statement can show that another one is needed: an allocated task needs a priority.
@@ -196,7 +198,7 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
         if isinstance(process, Task) and name not in context.scheduled:
             yield from _allocation(name, context.system, lone)
         if not process.stimuli:
-            yield Change(name, "period", _PERIOD)
+            yield _activation(name, context.dataflow)
         for stimulus in (context.system.stimuli_by_name.get(each) for each in process.stimuli):
             if stimulus is not None and is_unbounded(stimulus, context.system):
                 yield Change(stimulus.name, "min_distance", _PERIOD)
@@ -230,6 +232,14 @@ def _rate(analysis: Analysis, task: str) -> Fraction:
     """How often a task is activated at most; 0 if that is unknown."""
     distance = analysis[task].min_interarrival
     return Fraction(1, distance) if distance else Fraction(0)
+
+
+def _activation(process: str, dataflow: Dataflow) -> Change:
+    """The stimulus with the name of a process that has none, or a period."""
+    spare = spare_stimulus(process, dataflow)
+    if spare is not None and process in spare.name and not spare.is_triggered:
+        return Change(process, "stimulus", spare.name)
+    return Change(process, "period", _PERIOD)
 
 
 def _allocation(task: str, system: System, core: str | None) -> Iterator[Change]:

@@ -168,3 +168,14 @@ def test_a_policy_without_a_meaning_and_time_slices_are_stated():
         changes = missing_values(system, Settings(), analyze_system(system, Settings())).changes
         after = analyze_system(*apply(system, Settings(), changes))
         assert {process.wcrt for process in after.processes} == {20 * MS // 1000}
+
+
+def test_a_stimulus_with_the_name_of_a_process_is_proposed_for_it():
+    system = of_parts(
+        [task("A"), task("B")],
+        [TaskAllocation(task=name, scheduler="core", priority=number) for number, name in enumerate("AB")],
+        [Periodic(name=f"activates_{name}", period=MS) for name in "XBA"],
+        policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
+    )
+    found = missing_values(system, Settings(), analyze_system(system, Settings()))
+    assert [str(change) for change in found.changes] == ["A.stimulus=activates_A", "B.stimulus=activates_B"]
