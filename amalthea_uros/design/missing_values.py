@@ -169,7 +169,7 @@ class _ValueTrial:
 
 
 def _parts(changes: Sequence[Change], gained: Sequence[str]) -> Iterator[list[Change]]:
-    """What may be needless: all changes of a process without a result, then those of one kind, and then each one."""
+    """The changes that may be needless: all of a process without a result, then all of one kind, and then each one."""
     needless = [each for each in changes if each.object not in gained or each.key not in _INDISPENSABLE]
     for name in dict.fromkeys(each.object for each in needless if each.object not in gained):
         yield [each for each in needless if each.object == name]

@@ -254,7 +254,9 @@ def test_a_system_without_hardware_is_given_a_core_with_a_scheduler():
     assert [(each.before, each.after) for each in found] == [("not set", after) for after in ("1 MHz", "OSEK", "CPU")]
     # In any order: what is there is stated first.
     assert changed(bare, *stated) == changed(bare, *reversed(stated))
-    with pytest.raises(InvalidArgumentError, match=re.escape("no scheduler is responsible for the core 'CPU'; state its policy")):
+    with pytest.raises(
+        InvalidArgumentError, match=re.escape("no scheduler is responsible for the core 'CPU'; state its policy")
+    ):
         changed(bare, "CPU.frequency=1MHz", "A.core=CPU")
     with pytest.raises(InvalidArgumentError, match="unknown core 'CPU'"):
         changed(bare, "CPU.policy=OSEK")

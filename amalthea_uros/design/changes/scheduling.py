@@ -222,7 +222,7 @@ def _show_common_slice(configuration: Configuration, name: str) -> str:
 
 
 def _set_common_slice(configuration: Configuration, name: str, time: Time) -> Configuration:
-    """State the slice of everything below a scheduler that states none of its own."""
+    """State the slice of everything below a scheduler that has no slice itself."""
     scheduler = configuration.system.schedulers[name]
     if standard_policy(scheduler.policy) != Policy.PRIORITY_BASED_ROUND_ROBIN:
         raise InvalidArgumentError(

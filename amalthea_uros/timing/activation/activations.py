@@ -374,8 +374,8 @@ def spare_stimulus(process: str, dataflow: Dataflow) -> SpareStimulus | None:
     fired: set[str] = set()
     with suppress(UnknownError):
         fired = {firing.stimulus for each in system.processes for firing in dataflow.firings(each)}
-    found = min(unused, key=lambda name: (name not in fired, process not in name), default=None)
-    return None if found is None else SpareStimulus(found, found in fired)
+    spare = min(unused, key=lambda name: (name not in fired, process not in name), default=None)
+    return None if spare is None else SpareStimulus(spare, spare in fired)
 
 
 def _why_inactive(process: str, dataflow: Dataflow) -> str:
