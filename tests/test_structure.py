@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1045,
     "_version": 1,
     "am": 2,
-    "analyze": 8819,
+    "analyze": 8820,
     "bridge": 2867,
     "cli": 2459,
     "compare": 3859,

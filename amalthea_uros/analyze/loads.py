@@ -67,7 +67,8 @@ def _certain_overload(name: str, solution: Solution) -> Response | None:
         return None
     level = [other for other in context.on_core(item.core) if other.rank >= item.rank]
     names = {other.name for other in level}
-    if any(other.server is not None for other in level) or not names.issuperset(reached(names, context.activations.triggering)):
+    causing = reached(names, context.activations.triggering)
+    if any(other.server is not None for other in level) or not names.issuperset(causing):
         return None
     load = _certain_loads(dict.fromkeys(names, frozenset((item.core,))), context).get(item.core, Fraction(0))
     if load <= 1:
