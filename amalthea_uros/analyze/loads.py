@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from amalthea_uros._internal.graphs import reached
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.perf.network import Purpose
@@ -19,8 +20,10 @@ from amalthea_uros.timing.demand.overheads import COUNTED
 from amalthea_uros.timing.jobs.executed import states_mean
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
-from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
 from amalthea_uros.units import percent_text
+
+LONG_RUN = "load in the long run"
 
 
 def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
@@ -33,8 +36,7 @@ def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
     }
     certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
-        uncertain = {*context.with_uncertain_activations, *suppressible(context.system, context.activations)}
-        certain = certain_loads(allocated_cores(context.system), context.activations, context.demand_model, uncertain)
+        certain = _certain_loads(allocated_cores(context.system), context)
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
@@ -47,10 +49,41 @@ def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
         )
 
 
+def _certain_loads(cores: Mapping[str, frozenset[str]], context: TimingContext) -> Mapping[str, Fraction]:
+    uncertain = {*context.with_uncertain_activations, *suppressible(context.system, context.activations)}
+    return certain_loads(cores, context.activations, context.demand_model, uncertain)
+
+
+def _certain_overload(name: str, solution: Solution) -> Response | None:
+    """The response time of a process that could not be analysed, but whose priority is overloaded for certain.
+
+    The processes of this priority or higher need more than the whole core in the long run (Liu, Layland 1973). That holds whatever
+    their response times are if only they trigger each other: what a process of lower priority triggers comes as late as that does.
+    If one of them falls behind and triggers fewer jobs, then all that is below it falls behind, too.
+    """
+    context = solution.context
+    item = context.scheduled.get(name)
+    if item is None or not solution.is_known(name) or item.equal_priority is not EqualPriority.FIFO:
+        return None
+    level = [other for other in context.on_core(item.core) if other.rank >= item.rank]
+    names = {other.name for other in level}
+    causing = reached(names, context.activations.triggering)
+    if any(other.server is not None for other in level) or not names.issuperset(causing):
+        return None
+    load = _certain_loads(dict.fromkeys(names, frozenset((item.core,))), context).get(item.core, Fraction(0))
+    if load <= 1:
+        return None
+    reason = f"overload: tasks at this priority or higher need at least {percent_text(load, 1)} % of the core"
+    best = solution.bcet(name)
+    return Response(worst=None, best=best, method=LONG_RUN, source="Liu, Layland 1973", reason=reason, is_overload=True)
+
+
 def without_doubtful_overload(name: str, solution: Solution) -> Response | None:
     """The response time of a process; without bound, but not overloaded for certain, if what overloads it may exclude each other."""
     found, context = solution.responses.get(name), solution.context
-    if found is None or not found.is_overload or name not in context.scheduled:
+    if found is None:
+        return _certain_overload(name, solution)
+    if not found.is_overload or name not in context.scheduled:
         return found
     item = context.scheduled[name]
     here = [other for other in context.on_core(item.core) if other.rank >= item.rank and solution.is_known(other.name)]

@@ -7,6 +7,7 @@ the system can state them; so nothing of the results is kept but how many proces
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import count
 
 from amalthea_uros._internal.records import dataclass, field
@@ -20,18 +21,26 @@ from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.activations import spare_stimulus
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.scheduling.allocation import scheduler_cores
+from amalthea_uros.timing.scheduling.allocation import scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 #: Examples: a value that is accepted, and which nobody takes for that of his system.
-_PERIOD, _DEADLINE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "100MHz", "1000ticks"
+_PERIOD, _DEADLINE, _TIME_SLICE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "1ms", "100MHz", "1000ticks"
+#: For models without hardware: so that the tasks of a small one fit on it.
+_CORE, _CORE_FREQUENCY = "CPU", "1GHz"
+#: What a process needs in any case if the changes give it a response time: nothing dispatched or activated it without them.
+_INDISPENSABLE = ("core", "scheduler", "period", "stimulus")
+#: A policy whose name says nothing.
+_WITHOUT_MEANING = "UserSpecificSchedulingAlgorithm"
 #: One statement can show that another one is needed: an allocated task needs a priority.
 _ROUNDS = 4
 #: Analyses of so many processes in all are tried, so that the proposal takes no longer than the analysis of a large model.
-_EFFORT = 100
+_EFFORT = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +52,7 @@ class MissingValues:
     given : changes that were made already
     changes : with values that are examples
     gained : processes that have a bounded response time with them, and none without
-    lacks_schedulers : whether no scheduler is responsible for a core, which no change can state
+    lacks_schedulers : whether no scheduler is responsible for a core; other files of the model may have them
     """
 
     given: tuple[Change, ...]
@@ -62,11 +71,11 @@ def missing_values(
     analysis : of the system with the settings
     given : changes that were made already
     """
-    if analysis.processes and not any(scheduler_cores(name, system) for name in system.schedulers):
-        return MissingValues(given, (), (), lacks_schedulers=True)
+    lacks_schedulers = bool(analysis.processes) and not _dispatching(system)
     trial = _ValueTrial(system, settings, _bounded(analysis))
+    nothing = MissingValues(given, (), (), lacks_schedulers=True) if lacks_schedulers else None
     if len(trial.before) == len(analysis.processes) or len(analysis.processes) > _EFFORT:
-        return None
+        return nothing
     changes: list[Change] = []
     current = analysis
     for _ in range(_ROUNDS):
@@ -78,7 +87,12 @@ def missing_values(
         trial.note(changes, current)
     changes = trial.shortened(changes)
     gained = trial.gained(changes)
-    return MissingValues(given, tuple(changes), tuple(gained)) if gained else None
+    return MissingValues(given, tuple(changes), tuple(gained), lacks_schedulers) if gained else nothing
+
+
+def _dispatching(system: System) -> list[str]:
+    """The schedulers that are responsible for a core."""
+    return [name for name in system.schedulers if scheduler_cores(name, system)]
 
 
 def _settings(system: System, settings: Settings, changes: Sequence[Change]) -> Settings:
@@ -138,17 +152,30 @@ class _ValueTrial:
 
     def shortened(self, changes: Sequence[Change]) -> list[Change]:
         """The changes without those that give no result."""
-        kept, most = list(changes), len(self.gained(changes)) if changes else 0
-        for change in reversed(changes):
-            others = [each for each in kept if each != change]
+        kept = list(changes)
+        gained = self.gained(changes) if changes else []
+        for part in _parts(changes, gained):
+            others = [each for each in kept if each not in part]
+            if others == kept:
+                continue
             if not self.may_continue():
                 break
             try:
-                if len(self.gained(others)) >= most:
+                if len(self.gained(others)) >= len(gained):
                     kept = others
             except InvalidArgumentError:
                 continue  # another one needs it
         return kept
+
+
+def _parts(changes: Sequence[Change], gained: Sequence[str]) -> Iterator[list[Change]]:
+    """The changes that may be needless: all of a process without a result, then all of one kind, and then each one."""
+    needless = [each for each in changes if each.object not in gained or each.key not in _INDISPENSABLE]
+    for name in dict.fromkeys(each.object for each in needless if each.object not in gained):
+        yield [each for each in needless if each.object == name]
+    for key in dict.fromkeys(each.key for each in reversed(needless)):
+        yield [each for each in needless if each.key == key]
+    yield from ([each] for each in reversed(needless))
 
 
 def _wanted(analysis: Analysis) -> Iterator[Change]:
@@ -156,51 +183,73 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
     bounded = _bounded(analysis)
     context = analysis.solution.context
     yield from _clocks(context.system, context.settings)
+    lone = None if _dispatching(context.system) else next(iter(context.system.cores), _CORE)
+    if lone is not None:
+        yield Change(lone, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
     for name, scheduler in context.system.schedulers.items():
-        if scheduler.policy is None:
+        if scheduler.policy is None or scheduler.policy == _WITHOUT_MEANING:
             yield Change(name, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
+        if standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
+            yield Change(name, "time_slice", _TIME_SLICE)
     yield from _priorities(analysis)
     for name, process in context.system.processes.items():
         if name in bounded:
             continue
         if isinstance(process, Task) and name not in context.scheduled:
-            yield from _allocation(name, context.system)
+            yield from _allocation(name, context.system, lone)
         if not process.stimuli:
-            yield Change(name, "period", _PERIOD)
+            yield _activation(name, context.dataflow)
         for stimulus in (context.system.stimuli_by_name.get(each) for each in process.stimuli):
             if stimulus is not None and is_unbounded(stimulus, context.system):
                 yield Change(stimulus.name, "min_distance", _PERIOD)
-        if name not in context.scheduled or context.scheduled[name].deadline is None:
+        if name in context.scheduled and context.scheduled[name].deadline is None:
             yield Change(name, "deadline", _DEADLINE)
         yield from _execution_times(name, context.system)
 
 
 def _clocks(system: System, settings: Settings) -> Iterator[Change]:
-    """The frequencies of cores that are unknown."""
+    """The frequencies of cores that are unknown, or a core where there is none."""
+    if not system.cores:
+        yield Change(_CORE, "frequency", _CORE_FREQUENCY)
     for name, core in system.cores.items():
         if not settings.frequencies.get(name) and not system.frequency_of(core.clock):
             yield Change(name, "frequency", _FREQUENCY)
 
 
 def _priorities(analysis: Analysis) -> Iterator[Change]:
-    """Priorities that schedulers need, each another one and none that is used."""
+    """Priorities that schedulers need, each another one and none that is used; rate-monotonic, which misses the least."""
     context = analysis.solution.context
     used = {allocation.priority for allocation in context.system.mapping.tasks}
     unused = (number for number in count(1) if number not in used)
-    for allocation in context.system.mapping.tasks:
+    for allocation in sorted(context.system.mapping.tasks, key=lambda each: _rate(analysis, each.task)):
         scheduled = context.scheduled.get(allocation.task)
         is_needed = scheduled is None or scheduled.equal_priority is EqualPriority.UNKNOWN
         if allocation.priority is None and is_needed:
             yield Change(allocation.task, "priority", str(next(unused)))
 
 
-def _allocation(task: str, system: System) -> Iterator[Change]:
-    """The first scheduler that is responsible for a core, if nothing dispatches a task."""
+def _rate(analysis: Analysis, task: str) -> Fraction:
+    """How often a task is activated at most; 0 if that is unknown."""
+    distance = analysis[task].min_interarrival
+    return Fraction(1, distance) if distance else Fraction(0)
+
+
+def _activation(process: str, dataflow: Dataflow) -> Change:
+    """The stimulus with the name of a process that has none, or a period."""
+    spare = spare_stimulus(process, dataflow)
+    if spare is not None and process in spare.name and not spare.is_triggered:
+        return Change(process, "stimulus", spare.name)
+    return Change(process, "period", _PERIOD)
+
+
+def _allocation(task: str, system: System, core: str | None) -> Iterator[Change]:
+    """The first scheduler that is responsible for a core, or else the scheduler of a core, if nothing dispatches a task."""
     if any(allocation.task == task for allocation in system.mapping.tasks):
         return
-    scheduler = next((name for name in system.schedulers if scheduler_cores(name, system)), None)
-    if scheduler is not None:
-        yield Change(task, "scheduler", scheduler)
+    if core is not None:
+        yield Change(task, "core", core)
+    else:
+        yield Change(task, "scheduler", _dispatching(system)[0])
 
 
 def _execution_times(process: str, system: System) -> Iterator[Change]:

@@ -76,10 +76,18 @@ def _flaw(*items: str | FindingSource, same_name: bool = False, in_file: bool = 
     return Flaw(_sources(*items), same_name, in_file, of_events)
 
 
+#: Attributes whose type has a limit: what the schema of the newest version says of them, a rule says for every version.
+_LIMITED = (
+    *("alpha", "beta", "endAddress", "fillLevel", "initialValue", "maxBurstSize", "maxConcurrentTransfers", "maxValue"),
+    *("memOffset", "memoryPositionAddress", "minItemsCompleted", "numberOfOccurrences", "occurrenceCount", "occurrences"),
+    *("offset", "pRemainPromille", "prescaler", "samplingOffset", "samplingRecurrence", "sd", "startAddress", "step", "value"),
+)
+
 FLAWS = (
     # Files and references
     _flaw("XMI007", "XSD000", "INC-IO-VERSION", in_file=True),
     _flaw("XSD001", "XMI010", "XMI011", "XMI012", "XMI013", "XMI014", "XMI015", "INC-IO-FEATURE", same_name=True),
+    *(_flaw(FindingSource("AM-EMF-INTRINSIC/datatype", (each,)), FindingSource("XSD001", (each,))) for each in _LIMITED),
     _flaw("XMI023", "AM-EMF-INTRINSIC/proxy-resolves", "XMI020", "INC-IO-REF", "EXT003", same_name=True),
     _flaw("AM-EMF-INTRINSIC/unique-id", "AM-EMF-SCOPE", "INC-IO-NAME"),
     _flaw("EMF-ID", "INC-IO-XMIID"),

@@ -86,3 +86,20 @@ def test_a_stimulus_without_a_process_is_named_where_a_process_has_none():
         body = (ticks(1), *(Trigger(stimulus=name) for name in fired))
         built = two_cores(Proc("T", body, 100, priority=1), Proc("Idle", (ticks(2),), priority=2), triggers=("other", "second"))
         assert analyze_system(built).processes["Idle"].reason == reason.format(ending)
+
+
+def test_an_overload_is_the_cause_where_response_times_and_activations_depend_on_each_other():
+    # T triggers H, which is above it: 10 + 30 + 80 of 100 us. H itself is never late: T does not go on before H ends.
+    processes = (
+        Proc("Above", (ticks(10),), 100, priority=3),
+        Proc("H", (ticks(80),), stimuli=("go",), priority=2),
+        Proc("T", (Trigger(stimulus="go"), ticks(30)), 100, priority=1),
+        Proc("Below", (ticks(1),), 100, priority=0),
+    )
+    found = analyze_system(two_cores(*processes, triggers=("go",)))
+    assert {each.name: (str(each.verdict), each.reason) for each in found.processes} == {
+        "Above": ("met", ""),
+        "H": ("unknown", "it is triggered by 'T', which has no bounded response time"),
+        "T": ("unbounded", "overload: tasks at this priority or higher need at least 120.0 % of the core"),
+        "Below": ("unbounded", "overload: tasks at this priority or higher need at least 121.0 % of the core"),
+    }

@@ -5,6 +5,7 @@ from collections import Counter
 
 import pytest
 from answers import Answers, count, lines
+from effort import IS_THOROUGH
 from support import ROOT, SHARED
 
 CORPUS = SHARED / "corpus"
@@ -50,7 +51,7 @@ def kinds(answers):
 
 @pytest.mark.skipif(not CORPUS.exists(), reason="the published models are not here")
 def test_the_figures_of_the_page():
-    found = count(sorted(CORPUS.rglob("*.amxmi")))
+    found = count(sorted(CORPUS.rglob("*.amxmi")), with_proposals=IS_THOROUGH)
     page = (ROOT / "docs" / "analysis.md").read_text()
     rows = re.findall(
         r"^\| (?:processes|files|event chains) \| (\d+) \| (\d+) with [a-z ]+(?:, (\d+) with)?", page, re.MULTILINE
@@ -60,5 +61,8 @@ def test_the_figures_of_the_page():
         (str(found.files), str(found.complete), str(found.partial)),
         (str(found.chains), str(found.with_latency), ""),
     ]
+    proposed = re.search(r"analysis of (\d+) of these files ends, (\d+) processes .*; they state (\d+) values", page)
+    assert proposed is not None
+    assert not IS_THOROUGH or tuple(map(int, proposed.groups())) == (found.commands, found.bounded + found.gained, found.stated)
     table = re.findall(r"^\| ([a-z][^|]*) \| \d+ \| (\d+) \| ", page, re.MULTILINE)
     assert {reason: int(number) for reason, number in table if int(number)} == kinds(found)

@@ -57,6 +57,7 @@ SYSTEM = System(
                 name="OS",
                 schedulers=(
                     *(scheduler("S0", "C0"), scheduler("S1", "C1", "C2"), scheduler("S2", "C2")),
+                    os.Scheduler(name="Round", policy=os.Policy.PRIORITY_BASED_ROUND_ROBIN),
                     os.Scheduler(
                         name="Server",
                         policy=os.Policy.DEFERRABLE_SERVER,
@@ -142,6 +143,8 @@ VALUES = {
     "Free.period=1ms": ("not set", "1 ms"),
     "Both.stimulus=tick": ("own, tick", "tick"),
     "A.core=C1": ("C0", "C1"),
+    "Free.core=C0": ("not set", "C0"),
+    "C0.policy=OSEK": ("FixedPriorityPreemptive", "OSEK"),
     "Own.core=C2": ("C1", "C2"),
     "A.scheduler=S1": ("S0", "S1"),
     "I.core=C1": ("C0", "C1"),
@@ -149,6 +152,8 @@ VALUES = {
     "gear.mode=second": ("first", "second"),
     "number.mode=-3/2": ("1", "-3/2"),
     "Server.policy=PollingPeriodicServer": ("DeferrableServer", "PollingPeriodicServer"),
+    "A.time_slice=1ms": ("not set", "1 ms"),
+    "Round.time_slice=2ms": ("not set", "2 ms"),
     "Server.capacity=3ms": ("2 ms", "3 ms"),
     "Server.budget=3ms": ("2 ms", "3 ms"),
     "Server.period=8ms": ("9 ms", "8 ms"),
@@ -210,9 +215,10 @@ WRONG = {
     "Event.period=1ms": "'sporadic' of 'Event' is RelativePeriodic, which has no period",
     "sporadic.jitter=1ms": "RelativePeriodic, which has no jitter; these have one: Periodic",
     "Free.priority=1": "'Free' is not mapped",
-    "Free.core=C0": "'Free' is not mapped to any scheduler",
     "A.core=C2": "several schedulers are responsible for the core 'C2'; choose one: A.scheduler=S1, A.scheduler=S2, A.scheduler=Server",
     "A.core=C9": "unknown core 'C9'",
+    "C9.frequency=1MHz": "unknown object 'C9'",
+    "C2.policy=OSEK": "several schedulers are responsible for the core 'C2'; choose one: S1.policy=OSEK, S2.policy=OSEK",
     "A.scheduler=S9": "unknown scheduler 'S9'",
     "I.core=C2": "no interrupt controller is responsible for the core 'C2'",
     "B.execution_time=1us": "R1.execution_time, R2.execution_time",
@@ -230,6 +236,8 @@ WRONG = {
     "number.mode=one": "'one' is not a number",
     "S0.period=1ms": "its policy FixedPriorityPreemptive is not that of a server",
     "S0.priority=1": "'S0' has no parent",
+    "Free.time_slice=1ms": "'Free' is not mapped to a scheduler, so it has no time slice",
+    "S0.time_slice=1ms": "its policy FixedPriorityPreemptive is not PriorityBasedRoundRobin",
 }
 
 
@@ -237,6 +245,21 @@ WRONG = {
 def test_wrong_changes_say_what_was_expected(change):
     with pytest.raises(InvalidArgumentError, match=re.escape(WRONG[change])):
         changed(SYSTEM, change)
+
+
+def test_a_system_without_hardware_is_given_a_core_with_a_scheduler():
+    bare = replace(SYSTEM, hardware=hardware.Hardware(), os=os.Os(), mapping=mapping.Mapping())
+    stated = ["CPU.frequency=1MHz", "CPU.policy=OSEK", "A.core=CPU"]
+    found = describe(bare, Settings(), list(map(parse_change, stated)))
+    assert [(each.before, each.after) for each in found] == [("not set", after) for after in ("1 MHz", "OSEK", "CPU")]
+    # In any order: what is there is stated first.
+    assert changed(bare, *stated) == changed(bare, *reversed(stated))
+    with pytest.raises(
+        InvalidArgumentError, match=re.escape("no scheduler is responsible for the core 'CPU'; state its policy")
+    ):
+        changed(bare, "CPU.frequency=1MHz", "A.core=CPU")
+    with pytest.raises(InvalidArgumentError, match="unknown core 'CPU'"):
+        changed(bare, "CPU.policy=OSEK")
 
 
 def test_a_shared_stimulus_is_changed_for_one_process_only():

@@ -13,8 +13,9 @@ from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.design.missing_values import missing_values
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, Constant, Gauss, Uniform
-from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.os import Policy
+from amalthea_uros.perf.hardware import Hardware
+from amalthea_uros.perf.mapping import Mapping, TaskAllocation
+from amalthea_uros.perf.os import Os, Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import Custom, Periodic, RelativePeriodic
 from amalthea_uros.services.changed_model import write_changed
@@ -69,10 +70,31 @@ def test_what_has_all_its_response_times_lacks_nothing():
     assert proposed(replace(whole, mapping=replace(whole.mapping, tasks=whole.mapping.tasks[:1]))) is None
 
 
-def test_no_change_can_state_a_scheduler_that_is_not_there():
-    lonely = replace(SYSTEM, os=replace(SYSTEM.os, systems=()), mapping=replace(SYSTEM.mapping, tasks=()))
+@pytest.mark.parametrize("hardware", [SYSTEM.hardware, Hardware()])
+def test_a_core_without_a_scheduler_is_given_one_and_a_model_without_cores_a_core(hardware):
+    lonely = replace(SYSTEM, hardware=hardware, os=Os(), mapping=Mapping())
     found = missing_values(lonely, Settings(), analyze_system(lonely, Settings()))
-    assert (found.lacks_schedulers, found.changes) == (True, ())
+    name, stated = ("core", []) if hardware.structures else ("CPU", ["CPU.frequency"])
+    assert [change.target for change in found.changes] == [*stated, f"{name}.policy", "A.core", "B.core", "B.period", "C.core"]
+    # Other files of the model may say more about its schedulers.
+    assert found.lacks_schedulers
+    after = analyze_system(*apply(lonely, Settings(), found.changes))
+    # The bounds hold for any order of priorities; 30 ticks are 30 us at 1 MHz, and 30 ns at 1 GHz.
+    assert {each.wcrt for each in after.processes} == {30 * MS // 1000 if hardware.structures else 30_000}
+
+
+def test_priorities_that_are_proposed_are_rate_monotonic():
+    # Loads of 50 %, 40 % and 60 %: each may be the lowest of an overloaded core, but the two fastest fit together.
+    demands = {"Fast": (10, 5), "Middle": (20, 8), "Slow": (40, 24)}
+    system = of_parts(
+        [replace(task(name, name), activities=(ticks(demand),)) for name, (_, demand) in demands.items()],
+        [TaskAllocation(task=name, scheduler="core") for name in demands],
+        [Periodic(name=name, period=period * MS // 1000) for name, (period, _) in demands.items()],
+        policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
+    )
+    found = missing_values(system, Settings(), analyze_system(system, Settings()))
+    assert [str(change) for change in found.changes] == ["Slow.priority=1", "Middle.priority=2", "Fast.priority=3"]
+    assert found.gained == ("Fast", "Middle")
 
 
 def test_a_stated_period_says_nothing_of_the_phase():
@@ -128,3 +150,32 @@ def test_a_distribution_without_a_least_value_is_replaced_too():
         policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
     )
     assert proposed(system) == ({"B.execution_time"}, ("A", "B"))
+
+
+def test_a_policy_without_a_meaning_and_time_slices_are_stated():
+    # Of two tasks of 10 us with slices of 1 s, each waits for one job of the other one: 20 us; the policy decides which are stated.
+    for policy, stated in (
+        ("UserSpecificSchedulingAlgorithm", {"core.policy"}),
+        (Policy.PRIORITY_BASED_ROUND_ROBIN, {"core.time_slice"}),
+    ):
+        system = of_parts(
+            [task("A", "tick"), task("B", "tick")],
+            [TaskAllocation(task=name, scheduler="core", priority=1) for name in "AB"],
+            [Periodic(name="tick", period=MS)],
+            policy=policy,
+        )
+        assert proposed(system) == (stated, ("A", "B"))
+        changes = missing_values(system, Settings(), analyze_system(system, Settings())).changes
+        after = analyze_system(*apply(system, Settings(), changes))
+        assert {process.wcrt for process in after.processes} == {20 * MS // 1000}
+
+
+def test_a_stimulus_with_the_name_of_a_process_is_proposed_for_it():
+    system = of_parts(
+        [task("A"), task("B")],
+        [TaskAllocation(task=name, scheduler="core", priority=number) for number, name in enumerate("AB")],
+        [Periodic(name=f"activates_{name}", period=MS) for name in "XBA"],
+        policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
+    )
+    found = missing_values(system, Settings(), analyze_system(system, Settings()))
+    assert [str(change) for change in found.changes] == ["A.stimulus=activates_A", "B.stimulus=activates_B"]

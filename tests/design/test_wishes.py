@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 from design_systems import system_of
+from hand_made_systems import of_parts, ticks
 
 from amalthea_uros.design.changes.change import parse_sweep
 from amalthea_uros.design.optimize.choices import Vary, Wishes
@@ -12,7 +13,11 @@ from amalthea_uros.design.optimize.mapping import solve_mapping
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.design.optimize.search import try_all
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.os import Policy
+from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.services.optimize import optimize, plan_optimization
+from amalthea_uros.units import MICROSECOND
 
 TASKS = [{"name": "A", "C": 5, "T": 10, "D": 10}, {"name": "B", "C": 2, "T": 10, "D": 10}]
 
@@ -90,3 +95,25 @@ def test_the_order_of_tasks_in_a_file_does_not_count():
         mapping=replace(system.mapping, tasks=system.mapping.tasks[::-1]),
     )
     assert proposed(system) == proposed(reverse) != []
+
+
+def test_tasks_that_nothing_dispatches_are_given_cores():
+    # 60 % of a core each: only on different ones both meet their deadlines.
+    tasks = [Task(name=name, stimuli=("tick",), activities=(ticks(60),)) for name in "AB"]
+    stimulus = Periodic(name="tick", period=100 * MICROSECOND)
+    system = of_parts(tasks, [], [stimulus], cores=("c0", "c1"), policy=Policy.FIXED_PRIORITY_PREEMPTIVE)
+    found = optimize(system, vary=["cores"])
+    assert found.search.conclusion is Conclusion.OPTIMAL
+    assert {tuple(map(str, each.changes)) for each in found.proposals} == {
+        ("A.core=c0", "B.core=c1"),
+        ("A.core=c1", "B.core=c0"),
+    }
+
+
+def test_values_on_offer_are_all_new_where_the_present_design_has_none():
+    # Without a stated deadline, there are two designs with one and the present one.
+    system = system_of([{"name": "A", "C": 5, "T": 10, "D": 10}, {"name": "B", "C": 5, "T": 10, "D": 10}])
+    allocations = tuple(replace(each, deadline=None) for each in system.mapping.tasks)
+    wishes = Wishes(vary=(), offers=(parse_sweep("A.deadline=5us,6us"),))
+    problem = plan_optimization(replace(system, mapping=replace(system.mapping, tasks=allocations)), wishes).problem
+    assert [choice.options for choice in problem.space.choices] == [("not set", "5us", "6us")]

@@ -10,11 +10,13 @@ from hypothesis import strategies as st
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.findings.flaws import CONSEQUENCES, FLAWS
 from amalthea_uros.findings.grouping import group
+from amalthea_uros.metamodel.versions import facts, newest_version
 from amalthea_uros.validate import registry
 from tests.growth import SIZES, growth
 
 ERROR, WARNING, INFO = Severity.ERROR, Severity.WARNING, Severity.INFO
 REQUIRED = "AM-EMF-INTRINSIC/required-feature"
+DATATYPE = "AM-EMF-INTRINSIC/datatype"
 PROXY = "AM-EMF-INTRINSIC/proxy-resolves"
 
 
@@ -61,6 +63,16 @@ def test_a_general_rule_is_the_same_flaw_only_where_it_is_about_the_feature():
     period = finding("TIM-PERIOD", "the stimulus 'S' has no recurrence")
     assert shown(period, finding(REQUIRED, "the PeriodicStimulus has no recurrence")) == [("TIM-PERIOD", [REQUIRED], [])]
     assert len(shown(period, finding(REQUIRED, "the PeriodicStimulus has no other"))) == 2
+
+
+def test_a_number_beyond_its_limit_is_the_same_flaw_in_the_schema():
+    schema = [finding("XSD001", f'attribute {each}="0.0" is not a number greater than 0', "path") for each in ("alpha", "beta")]
+    rule = [finding(DATATYPE, f"the {each} of the TimeBetaDistribution is 0.0, but must be ...") for each in ("alpha", "beta")]
+    assert shown(*schema, *rule) == [(DATATYPE, ["XSD001"], [])] * 2
+    of_schema = facts(newest_version()).classes.values()
+    limited = {each.name for of in of_schema for each in of.features if each.type in facts(newest_version()).numbers}
+    joined = {about for flaw in FLAWS for source in flaw.sources if source.id == "XSD001" for about in source.about}
+    assert joined == limited
 
 
 def test_references_of_one_object_belong_together_by_their_target():

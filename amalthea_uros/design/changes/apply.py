@@ -10,7 +10,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.similar import similar
 from amalthea_uros.design.changes.change import EXAMPLE, FORM, Change
 from amalthea_uros.design.changes.key import UNSET, Configuration, Key
-from amalthea_uros.design.changes.kinds import FIRST_KEYS, KINDS
+from amalthea_uros.design.changes.kinds import CORE, FIRST_KEYS, KINDS
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
@@ -90,6 +90,8 @@ def _keys(system: System, name: str, key: str) -> Iterator[Key[Any]]:
     if not name:
         raise InvalidArgumentError(f"{key!r} does not name an object and a key; expected {FORM}, e.g. {EXAMPLE}")
     kinds = [kind for kind in KINDS if name in kind.objects(system)]
+    if not kinds and not system.cores and key in CORE.keys:
+        kinds = [CORE]
     if not kinds:
         require("object", [name], dict.fromkeys(each for kind in KINDS for each in kind.objects(system)))
     found = [kind.keys[key] for kind in kinds if key in kind.keys]

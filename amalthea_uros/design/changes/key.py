@@ -99,6 +99,7 @@ RUNNABLES = Collection("software", "runnables")
 MODE_LABELS = Collection("software", "mode_labels")
 STIMULI = Collection("stimuli", "stimuli")
 CLOCKS = Collection("hardware", "clocks")
+STRUCTURES = Collection("hardware", "structures")
 OPERATING_SYSTEMS = Collection("os", "systems")
 TASK_ALLOCATIONS = Collection("mapping", "tasks", "task")
 ISR_ALLOCATIONS = Collection("mapping", "isrs", "isr")
@@ -119,6 +120,14 @@ def field_key(place: Collection, field: str, parse: Callable[[str], V], text: Ca
         return configuration._replace(system=place.with_fields(configuration.system, name, **fields))
 
     return Key(parse, show, with_value)
+
+
+def unused(name: str, names: Iterable[str]) -> str:
+    """A name that no other object has: the wanted one, with an underscore for each object that has it."""
+    taken = set(names)
+    while name in taken:
+        name += "_"
+    return name
 
 
 E = TypeVar("E", bound=StrEnum)

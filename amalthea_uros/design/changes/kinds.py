@@ -13,6 +13,7 @@ from amalthea_uros.design.changes.key import (
     ISR_ALLOCATIONS,
     MODE_LABELS,
     PLACEMENTS,
+    STRUCTURES,
     TASK_ALLOCATIONS,
     TASKS,
     UNSET,
@@ -24,11 +25,13 @@ from amalthea_uros.design.changes.key import (
     one_of,
     positive_frequency,
     positive_number,
+    unused,
     whole_number,
 )
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.activities import Activity, Communication, LabelAccess
+from amalthea_uros.perf.hardware import Core, Structure
 from amalthea_uros.perf.mapping import Placement
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.perf.system import System
@@ -87,15 +90,19 @@ _LABEL_KEYS: dict[str, Key[Any]] = {
 
 def _show_core_frequency(configuration: Configuration, core: str) -> str:
     system, settings = configuration
-    frequency = settings.frequencies.get(core) or system.frequency_of(system.cores[core].clock)
+    stated = system.frequency_of(system.cores[core].clock) if core in system.cores else None
+    frequency = settings.frequencies.get(core) or stated
     return UNSET if frequency is None else frequency_text(frequency)
 
 
 def _set_core_frequency(configuration: Configuration, core: str, frequency: Frequency) -> Configuration:
-    """Change the frequency of one core; other cores with the same clock keep theirs."""
-    refuse_wire(core, configuration.system)
-    settings = configuration.settings
-    return configuration._replace(settings=replace(settings, frequencies={**settings.frequencies, core: frequency}))
+    """Change the frequency of one core, or add the only one; other cores with the same clock keep theirs."""
+    system, settings = configuration
+    refuse_wire(core, system)
+    if core not in system.cores:
+        ecu = Structure(name=unused(core, (each.name for each in system.hardware.walk())), cores=(Core(name=core),))
+        system = STRUCTURES.with_item(system, ecu)
+    return Configuration(system, replace(settings, frequencies={**settings.frequencies, core: frequency}))
 
 
 def _set_clock_frequency(configuration: Configuration, clock: str, frequency: Frequency) -> Configuration:
@@ -151,18 +158,24 @@ _ISR_KEYS: Mapping[str, Key[Any]] = {
 _CLOCK = field_key(CLOCKS, "frequency", positive_frequency, frequency_text)
 _MODE_KEY = Key(str, field_key(MODE_LABELS, "initial", str).show, _set_mode)
 
+#: A model without cores can be given one: by its frequency.
+CORE = ChangeableKind(
+    "core",
+    lambda system: system.cores,
+    {"frequency": Key(positive_frequency, _show_core_frequency, _set_core_frequency), "policy": scheduling.CORE_POLICY},
+)
+
 #: Where objects of different kinds have the same name, the first kind counts for which the change is possible.
 KINDS = (
     ChangeableKind("task", lambda system: [task.name for task in system.software.tasks], _TASK_KEYS),
     ChangeableKind("ISR", lambda system: [isr.name for isr in system.software.isrs], _ISR_KEYS),
     ChangeableKind("runnable", lambda system: system.runnables, {"execution_time": execution_time.RUNNABLE_KEY}),
-    ChangeableKind(
-        "core", lambda system: system.cores, {"frequency": Key(positive_frequency, _show_core_frequency, _set_core_frequency)}
-    ),
+    # A scheduler can have the name of its core.
+    ChangeableKind("scheduler", lambda system: system.schedulers, scheduling.SCHEDULER_KEYS),
+    CORE,
     ChangeableKind(
         "clock", lambda system: system.clocks, {"frequency": Key(positive_frequency, _CLOCK.show, _set_clock_frequency)}
     ),
-    ChangeableKind("scheduler", lambda system: system.schedulers, scheduling.SCHEDULER_KEYS),
     ChangeableKind(
         "stimulus", lambda system: system.stimuli_by_name, {**activation.STIMULUS_KEYS, "min_distance": distances.MIN_DISTANCE}
     ),
@@ -173,4 +186,4 @@ KINDS = (
 )
 
 #: Execution times are converted to ticks at the frequency of a core, so those that decide about it are changed before the others.
-FIRST_KEYS = ("frequency", "scheduler", "controller", "core")
+FIRST_KEYS = ("frequency", "policy", "scheduler", "controller", "core")

@@ -216,8 +216,16 @@ class _Builder:
                 yield _choice(name, "offset", DecisionKind.OFFSET, map(time_text, [releases.offset, *others]))
 
     def _cores(self) -> Iterator[Choice]:
-        """Other schedulers of the same policy: by the names of their cores if each of them has one of its own."""
+        """Other schedulers of the same policy: by the names of their cores if each of them has one of its own.
+
+        Tasks that nothing dispatches may be on any core that a single scheduler dispatches.
+        """
         schedulers = self.system.schedulers
+        dispatched = [core for name in schedulers if (core := self._own_core(name)) is not None]
+        allocated = {each.task for each in self.system.mapping.tasks}
+        for task in self.system.software.tasks:
+            if task.name not in allocated:
+                yield _choice(task.name, "core", DecisionKind.CORE, [UNSET, *dispatched])
         for allocation in self.system.mapping.tasks:
             own = schedulers.get(allocation.scheduler)
             if own is None:
@@ -309,8 +317,6 @@ class _Builder:
             raise InvalidArgumentError(f"{target!r} is both on offer and kept")
         texts = [self._shown(change) for change in offer.changes()]
         before = describe(*self.present, [Change(offer.object, offer.key, offer.values[0])])[0].before
-        if before == UNSET:
-            return _choice(offer.object, offer.key, _KINDS.get(offer.key, DecisionKind.OTHER), texts)
         return _choice(offer.object, offer.key, _KINDS.get(offer.key, DecisionKind.OTHER), [before, *texts])
 
     def _shown(self, change: Change) -> str:

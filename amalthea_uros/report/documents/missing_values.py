@@ -22,15 +22,28 @@ def missing_section(result: AnalysisResult) -> Section:
     """The command to paste; empty if nothing is missing that can be stated."""
     if result.missing is None:
         return section(_HEADING)
-    if result.missing.lacks_schedulers:
-        return section(_HEADING, lines(_NO_SCHEDULERS))
+    unallocated = [lines(_NO_SCHEDULERS)] if result.missing.lacks_schedulers else []
+    if not result.missing.changes:
+        return section(_HEADING, *unallocated)
     number = counted(len(result.missing.gained), "more process")
     said = f"These values are examples; with yours in their place, {number} can have a response time:"
-    return section(_HEADING, lines(said), Listing("", list(_command(result, result.missing))))
+    return section(_HEADING, *unallocated, lines(said), Listing("", [*_command(result, result.missing), *_allocation(result)]))
+
+
+def _allocation(result: AnalysisResult) -> Iterator[str]:
+    """The command that finds cores for tasks that nothing dispatches, if there are schedulers for them."""
+    assert result.missing is not None
+    if not result.missing.given and any(change.key == "scheduler" for change in result.missing.changes):
+        yield "cores on which all deadlines are met are found by:"
+        yield f"  amuros optimize {_files(result)} --vary cores"
+
+
+def _files(result: AnalysisResult) -> str:
+    return " ".join(quote(visible(str(path))) for path in result.paths)
 
 
 def _command(result: AnalysisResult, missing: MissingValues) -> Iterator[str]:
-    words = ["amuros analyze", *(quote(visible(str(path))) for path in result.paths)]
+    words = ["amuros analyze", _files(result)]
     words += (f"--set {quote(str(change))}" for change in missing.given)
     stated = [f"--set {quote(str(change))}" for change in missing.changes]
     yield f"  {' '.join(words)} \\"

@@ -144,7 +144,7 @@ class Activations:
         """Why a process has no stimulus."""
         transmission = self.system.transmissions.get(process.name)
         if transmission is None or transmission.purpose is not Purpose.DATA or transmission.agent.most is not None:
-            return f"it has no stimulus{_spare_stimulus(self.dataflow)}"
+            return _why_inactive(process.name, self.dataflow)
         agent = self.system.network.agent
         return f"how much later {agent!r} sends one message than another is not stated: 'middleware.agent.to_controller'"
 
@@ -355,13 +355,32 @@ def triggered_together(activations: Activations) -> list[TriggeredTogether]:
     return [TriggeredTogether(cause, numbers) for cause, numbers in found.items() if len(numbers) > 1]
 
 
-def _spare_stimulus(dataflow: Dataflow) -> str:
-    """The stimulus that a process without one may have been meant to have, for a reason; "" if each one activates something."""
+class SpareStimulus(NamedTuple):
+    """A stimulus that no process has.
+
+    Attributes
+    ----------
+    is_triggered : whether a job triggers it
+    """
+
+    name: str
+    is_triggered: bool
+
+
+def spare_stimulus(process: str, dataflow: Dataflow) -> SpareStimulus | None:
+    """The stimulus that a process without one may have been meant to have: one that is triggered, or one with its name."""
     system = dataflow.system
     unused = [each.name for each in system.stimuli.stimuli if each.name not in dataflow.activated]
+    fired: set[str] = set()
     with suppress(UnknownError):
-        fired = {firing.stimulus for process in system.processes for firing in dataflow.firings(process)}
-        unused.sort(key=lambda name: name not in fired)
-        if unused and unused[0] in fired:
-            return f", and the stimulus {unused[0]!r}, which is triggered, activates no process"
-    return f", and the stimulus {unused[0]!r} activates no process" if unused else ""
+        fired = {firing.stimulus for each in system.processes for firing in dataflow.firings(each)}
+    spare = min(unused, key=lambda name: (name not in fired, process not in name), default=None)
+    return None if spare is None else SpareStimulus(spare, spare in fired)
+
+
+def _why_inactive(process: str, dataflow: Dataflow) -> str:
+    spare = spare_stimulus(process, dataflow)
+    if spare is None:
+        return "it has no stimulus"
+    triggered = ", which is triggered," if spare.is_triggered else ""
+    return f"it has no stimulus, and the stimulus {spare.name!r}{triggered} activates no process"

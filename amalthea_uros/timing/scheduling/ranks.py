@@ -36,6 +36,8 @@ _GROUP, _NO_GROUP = "taskGroup", 0
 #: Names of the parameters of servers: those of the standard definitions, and those of AMALTHEA until 1.2.
 CAPACITY = ("capacity", "maxBudget")
 PERIOD = ("period", "replenishment")
+#: The parameter of round robin.
+TIME_SLICE = "timeSliceLength"
 
 
 @dataclass(frozen=True, slots=True)
@@ -360,7 +362,7 @@ def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext
 
 def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
     found = _fixed_priority(scheduler, parameters, base)
-    length = parameters.required(_time(parameters.of(scheduler, "timeSliceLength")), "timeSliceLength")
+    length = parameters.required(_time(parameters.of(scheduler, TIME_SLICE)), TIME_SLICE)
     return replace(found, equal_priority=EqualPriority.ROUND_ROBIN, slice=length)
 
 
