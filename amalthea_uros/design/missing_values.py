@@ -6,15 +6,16 @@ the system can state them; so nothing of the results is kept but how many proces
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import count
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call, Execute, walk
 from amalthea_uros.perf.distributions import highest, lowest
@@ -28,6 +29,9 @@ from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
+
+if TYPE_CHECKING:
+    from amalthea_uros.design.description.origin import DescriptionOrigin
 
 #: Examples: a value that is accepted, and which nobody takes for that of his system.
 _PERIOD, _DEADLINE, _TIME_SLICE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "1ms", "100MHz", "1000ticks"
@@ -62,28 +66,30 @@ class MissingValues:
 
 
 def missing_values(
-    system: System, settings: Settings, analysis: Analysis, given: tuple[Change, ...] = ()
+    origin: DescriptionOrigin | SystemOrigin, analysis: Analysis, given: tuple[Change, ...] = (), unset: Sequence[Change] = ()
 ) -> MissingValues | None:
     """The fewest statements that give the most results; None if no process lacks one, or no statement helps.
 
     Parameters
     ----------
-    analysis : of the system with the settings
+    origin : of the system that was analysed
     given : changes that were made already
+    unset : examples of values that its description does not have
     """
+    system = origin.present.system
     lacks_schedulers = bool(analysis.processes) and not _dispatching(system)
-    trial = _ValueTrial(system, settings, _bounded(analysis))
+    trial = _ValueTrial(origin, _bounded(analysis), len(system.processes))
     nothing = MissingValues(given, (), (), lacks_schedulers=True) if lacks_schedulers else None
     if len(trial.before) == len(analysis.processes) or len(analysis.processes) > _EFFORT:
         return nothing
     changes: list[Change] = []
     current = analysis
     for _ in range(_ROUNDS):
-        changed, new = trial.accepted(changes, _wanted(current))
+        new = trial.accepted(changes, (*unset, *_wanted(current)))
         if not new or not trial.may_continue():
             break
         changes += new
-        current = analyze_system(changed, _settings(system, settings, changes))
+        current = analyze_system(*origin.configure(changes))
         trial.note(changes, current)
     changes = trial.shortened(changes)
     gained = trial.gained(changes)
@@ -93,10 +99,6 @@ def missing_values(
 def _dispatching(system: System) -> list[str]:
     """The schedulers that are responsible for a core."""
     return [name for name in system.schedulers if scheduler_cores(name, system)]
-
-
-def _settings(system: System, settings: Settings, changes: Sequence[Change]) -> Settings:
-    return apply(system, settings, changes).settings
 
 
 def _bounded(analysis: Analysis) -> set[str]:
@@ -110,45 +112,49 @@ class _ValueTrial:
     Attributes
     ----------
     before : the processes that have a bound without any
+    size : the number of processes
     """
 
-    system: System
-    settings: Settings
+    origin: DescriptionOrigin | SystemOrigin
     before: set[str]
+    size: int
     effort: int = 0
     _gained: dict[tuple[Change, ...], list[str]] = field(default_factory=dict)
 
     def may_continue(self) -> bool:
         """Whether another analysis is within the effort; counts it."""
-        self.effort += max(1, len(self.system.processes))
+        self.effort += max(1, self.size)
         return self.effort <= _EFFORT
 
-    def accepted(self, changes: Sequence[Change], wanted: Iterator[Change]) -> tuple[System, list[Change]]:
-        """Those of the wanted changes that are possible and not made yet, and the system with them."""
+    def accepted(self, changes: Sequence[Change], wanted: Iterable[Change]) -> list[Change]:
+        """Those of the wanted changes that are possible and not made yet."""
         made = {change.target for change in changes}
-        configuration = apply(self.system, self.settings, changes)
+        origin: DescriptionOrigin | SystemOrigin = self.origin.after(changes)
         new: list[Change] = []
         for change in wanted:
             if change.target in made or not str(change).isprintable():
                 continue
             try:
-                configuration = apply(*configuration, [change])
+                # Some errors only show when the whole is built.
+                origin.configure([change])
+                origin = origin.after([change])
             except InvalidArgumentError:
                 continue
             made.add(change.target)
             new.append(change)
-        return configuration.system, new
+        return new
 
     def gained(self, changes: Sequence[Change]) -> list[str]:
         """The processes that have a bound only with the changes."""
         if tuple(changes) not in self._gained:
-            self.note(changes, analyze_system(*apply(self.system, self.settings, changes)))
+            self.note(changes, analyze_system(*self.origin.configure(changes)))
         return self._gained[tuple(changes)]
 
     def note(self, changes: Sequence[Change], analysis: Analysis) -> None:
         """Remember what an analysis with changes gains."""
         bounded = _bounded(analysis)
-        self._gained[tuple(changes)] = [name for name in self.system.processes if name in bounded and name not in self.before]
+        names = self.origin.present.system.processes
+        self._gained[tuple(changes)] = [name for name in names if name in bounded and name not in self.before]
 
     def shortened(self, changes: Sequence[Change]) -> list[Change]:
         """The changes without those that give no result."""

@@ -10,6 +10,8 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
+from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.design.missing_values import missing_values
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, Constant, Gauss, Uniform
@@ -37,8 +39,12 @@ SYSTEM = of_parts(
 )
 
 
+def missing_values_of(system):
+    return missing_values(SystemOrigin(Configuration(system, Settings())), analyze_system(system, Settings()))
+
+
 def proposed(system):
-    found = missing_values(system, Settings(), analyze_system(system, Settings()))
+    found = missing_values_of(system)
     return None if found is None else ({change.target for change in found.changes}, found.gained)
 
 
@@ -48,7 +54,7 @@ def test_what_is_missing_is_named_and_nothing_else():
 
 
 def test_with_the_proposal_all_processes_have_a_response_time():
-    found = missing_values(SYSTEM, Settings(), analyze_system(SYSTEM, Settings()))
+    found = missing_values_of(SYSTEM)
     after = analyze_system(*apply(SYSTEM, Settings(), found.changes))
     # In the worst of all orders each waits for two others.
     assert {process.response.worst for process in after.processes} == {30 * MS // 1000}
@@ -73,7 +79,7 @@ def test_what_has_all_its_response_times_lacks_nothing():
 @pytest.mark.parametrize("hardware", [SYSTEM.hardware, Hardware()])
 def test_a_core_without_a_scheduler_is_given_one_and_a_model_without_cores_a_core(hardware):
     lonely = replace(SYSTEM, hardware=hardware, os=Os(), mapping=Mapping())
-    found = missing_values(lonely, Settings(), analyze_system(lonely, Settings()))
+    found = missing_values_of(lonely)
     name, stated = ("core", []) if hardware.structures else ("CPU", ["CPU.frequency"])
     assert [change.target for change in found.changes] == [*stated, f"{name}.policy", "A.core", "B.core", "B.period", "C.core"]
     # Other files of the model may say more about its schedulers.
@@ -92,7 +98,7 @@ def test_priorities_that_are_proposed_are_rate_monotonic():
         [Periodic(name=name, period=period * MS // 1000) for name, (period, _) in demands.items()],
         policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
     )
-    found = missing_values(system, Settings(), analyze_system(system, Settings()))
+    found = missing_values_of(system)
     assert [str(change) for change in found.changes] == ["Slow.priority=1", "Middle.priority=2", "Fast.priority=3"]
     assert found.gained == ("Fast", "Middle")
 
@@ -165,7 +171,7 @@ def test_a_policy_without_a_meaning_and_time_slices_are_stated():
             policy=policy,
         )
         assert proposed(system) == (stated, ("A", "B"))
-        changes = missing_values(system, Settings(), analyze_system(system, Settings())).changes
+        changes = missing_values_of(system).changes
         after = analyze_system(*apply(system, Settings(), changes))
         assert {process.wcrt for process in after.processes} == {20 * MS // 1000}
 
@@ -177,5 +183,5 @@ def test_a_stimulus_with_the_name_of_a_process_is_proposed_for_it():
         [Periodic(name=f"activates_{name}", period=MS) for name in "XBA"],
         policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
     )
-    found = missing_values(system, Settings(), analyze_system(system, Settings()))
+    found = missing_values_of(system)
     assert [str(change) for change in found.changes] == ["A.stimulus=activates_A", "B.stimulus=activates_B"]

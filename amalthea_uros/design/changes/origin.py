@@ -39,6 +39,10 @@ class SystemOrigin:
         """The system and the settings with changes; InvalidArgumentError if something is wrong with one."""
         return apply(*self.present, changes)
 
+    def after(self, changes: Sequence[Change]) -> SystemOrigin:
+        """The changed system; raises as `configure`."""
+        return SystemOrigin(self.configure(changes))
+
     def differences(self, changes: Sequence[Change]) -> tuple[Difference, ...]:
         """The values before and after changes, and what else differs because of them; raises as `configure`."""
         return described(self.present, changes) if changes else ()
