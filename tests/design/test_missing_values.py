@@ -20,6 +20,7 @@ from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import Os, Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import Custom, Periodic, RelativePeriodic
+from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings
 
@@ -185,3 +186,30 @@ def test_a_stimulus_with_the_name_of_a_process_is_proposed_for_it():
     )
     found = missing_values_of(system)
     assert [str(change) for change in found.changes] == ["A.stimulus=activates_A", "B.stimulus=activates_B"]
+
+
+#: As it is imported: nobody stated how long the network and the agent take.
+DESCRIBED = """
+amuros: 1
+name: imported
+hardware: {platform: generic, frequency: 160 MHz}
+middleware:
+  executor: {name: executor, max_handles: 2, loop: {spin_some: 10 ms, sleep: 5 ms}, execution_time: {base: 50 us}}
+  transport: {udp: {bitrate: 10 Mbit/s}}
+application:
+  nodes:
+    - name: robot
+      publishers: [{topic: speed, message_size: 4 B, reliability: best-effort}]
+      subscriptions: [{name: On_Cmd, topic: cmd, message_size: 48 B, rate: 20 Hz, execution_time: 80 us}]
+      timers: [{name: On_Timer, period: 50 ms, execution_time: 100 us, publishes: [speed]}]
+"""
+
+
+def test_the_times_of_a_network_and_of_an_agent_are_values_of_a_description(tmp_path):
+    (tmp_path / "app.yaml").write_text(DESCRIBED)
+    found = analyze_files([tmp_path / "app.yaml"], with_missing=True)
+    assert all(handle.response.worst is None for executor in found.analysis.executors for handle in executor.handles)
+    assert {each.target for each in found.missing.changes} == {"udp.latency", "Agent.to_controller"}
+    stated = analyze_files([tmp_path / "app.yaml"], changes=found.missing.changes, with_missing=True)
+    assert all(handle.response.worst for executor in stated.analysis.executors for handle in executor.handles)
+    assert stated.missing is None

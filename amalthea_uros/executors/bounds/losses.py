@@ -167,7 +167,7 @@ def _while_nothing_is_taken(cycle: Cycle) -> str:
     """What happens while messages are stored and none is taken."""
     if can_defer(cycle.executor):
         return "while the trigger condition is false, "
-    if cycle.whole.suspension.why:
+    if cycle.whole.suspension.why and cycle.whole.suspension.most is not None:
         return f"while {cycle.whole.suspension.why}, "
     return "while an iteration executes, "
 
