@@ -55,22 +55,16 @@ def with_host(system: System) -> System:
 
 
 def _located(event: Event, host: Host) -> Event:
-    """An event that stands for a callback of the host as one of its runnable, if one thread alone calls it."""
+    """An event that stands for a callback of the host as one of its runnable, in whichever thread calls it."""
     if not isinstance(event, CustomEvent):
         return event
     changes = {"start": RunnableChange.START, "finish": RunnableChange.TERMINATE}
-    for executor in host.executors:
-        threads = thread_names(executor)
-        for callback in executor.callbacks if len(threads) == 1 else ():
-            for moment, change in changes.items():
-                if event.name == f"{callback.name}_{moment}":
-                    return RunnableEvent(
-                        name=event.name,
-                        runnable=runnable_name(callback),
-                        change=change,
-                        process=threads[0],
-                        origin=event.origin,
-                    )
+    for callback in host.callbacks:
+        for moment, change in changes.items():
+            if event.name == f"{callback.name}_{moment}":
+                return RunnableEvent(
+                    name=event.name, runnable=runnable_name(callback), change=change, origin=event.origin
+                )
     return event
 
 
