@@ -186,7 +186,7 @@ class HostRecords:
         return [self._line(each, topic, transmission.link, agent) for each in self._subscribing(topic)]
 
     def publications(self, callback: HostCallback, thread: str, transmissions: dict[str, int]) -> Iterator[int]:
-        """The records of what a callback publishes at its end in a thread: one for each subscription, and each message to a controller."""
+        """The records of what a callback publishes at its end in a thread, for each subscription and each message to a controller."""
         for topic in callback.publishes:
             for each in self._subscribing(topic):
                 yield self._publication((callback.name, thread, each.name), self._line(each, topic))
