@@ -39,6 +39,7 @@ from amalthea_uros.report.documents.analysis import (
 from amalthea_uros.report.documents.descriptions import bus_section, pools_section
 from amalthea_uros.report.documents.explanation import interference, message_hops, terms_of
 from amalthea_uros.report.documents.findings import findings_section
+from amalthea_uros.report.documents.host import host_section
 from amalthea_uros.report.documents.judged import (
     concerned,
     judged_items,
@@ -248,6 +249,7 @@ _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     _load_section,
     _response_times_section,
     _executors_section,
+    host_section,
     observed_section,
     gantt_section,
     histogram_section,

@@ -168,6 +168,11 @@ def _structure(computer: HostComputer) -> Structure:
     return Structure(name=f"{_PREFIX}{computer.name}", kind=StructureKind.ECU, cores=cores)
 
 
+def host_cores(executor: HostExecutor, host: Host) -> tuple[str, ...]:
+    """The names of the cores on which the threads of an executor may run."""
+    return _cores(executor.computer, _allowed(executor, host))
+
+
 def _allowed(executor: HostExecutor, host: Host) -> tuple[int, ...]:
     """The cores on which the threads of an executor may run."""
     return executor.thread.cores or tuple(range(host.computer_of(executor).cores))
@@ -200,7 +205,7 @@ def _server(executor: HostExecutor, host: Host) -> Scheduler:
     return Scheduler(
         name=host_name(executor),
         policy=Policy.CONSTANT_BANDWIDTH_SERVER,
-        cores=_cores(executor.computer, _allowed(executor, host)),
+        cores=host_cores(executor, host),
         parent=Parent(scheduler=_by_deadline(executor.computer), deadline=executor.thread.period, parameters=(budget, period)),
     )
 
