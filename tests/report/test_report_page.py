@@ -33,7 +33,7 @@ VOID = {"meta", "link", "br", "hr", "img", "input"}
 
 @cache
 def page_of(path, **options):
-    return report(path, duration="100 ms", **options).html
+    return report(path, **{"duration": "100 ms"} | options).html
 
 
 def parsed(page):

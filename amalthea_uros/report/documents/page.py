@@ -39,7 +39,6 @@ from amalthea_uros.report.documents.analysis import (
 from amalthea_uros.report.documents.descriptions import bus_section, pools_section
 from amalthea_uros.report.documents.explanation import interference, message_hops, terms_of
 from amalthea_uros.report.documents.findings import findings_section
-from amalthea_uros.report.documents.host import host_section
 from amalthea_uros.report.documents.judged import (
     concerned,
     judged_items,
@@ -50,7 +49,7 @@ from amalthea_uros.report.documents.judged import (
     why,
     worst_chains,
 )
-from amalthea_uros.report.documents.observed import observed_section
+from amalthea_uros.report.documents.observed import host_section, observed_section
 from amalthea_uros.report.documents.worst_cases import gantt_section, histogram_section, hops_section
 from amalthea_uros.report.pictures.load_bars import draw_loads
 from amalthea_uros.report.pictures.response_bars import draw_responses

@@ -9,7 +9,6 @@ from support import ROOT
 
 from amalthea_uros.analyze.system import analyze_system
 
-
 #: Methods of the vectors that are used: no bound is above theirs where they hold.
 USED = {
     *("ecrts19-polled", "ecrts19-prefix", "ecrts19-chain", "rtss21-rr", "rtss21-rr-unordered"),
