@@ -129,9 +129,15 @@ class HostExecutor(Named):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HostComputer(Named):
-    """A computer."""
+    """A computer.
+
+    Attributes
+    ----------
+    isolated : cores on which no thread runs that is not described
+    """
 
     cores: int
+    isolated: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -157,6 +163,25 @@ class Host(Brief):
     computers: tuple[HostComputer, ...] = ()
     executors: tuple[HostExecutor, ...] = ()
     topics: tuple[HostTopic, ...] = ()
+
+    def computer_of(self, executor: HostExecutor) -> HostComputer:
+        """The computer of an executor."""
+        return next(computer for computer in self.computers if computer.name == executor.computer)
+
+    def is_fairly_shared(self, executor: HostExecutor) -> bool:
+        """Whether threads of SCHED_OTHER can delay an executor: it is one, and not the only one of an isolated core."""
+        if executor.thread.policy is not HostPolicy.OTHER:
+            return False
+        cores, isolated = executor.thread.cores, self.computer_of(executor).isolated
+        rivals = [
+            other
+            for other in self.executors
+            if other.computer == executor.computer
+            and other.thread.policy is HostPolicy.OTHER
+            and (not other.thread.cores or set(other.thread.cores).intersection(cores))
+        ]
+        is_one_thread = executor.kind is not HostExecutorKind.MULTI_THREADED
+        return len(cores) != 1 or cores[0] not in isolated or len(rivals) > 1 or not is_one_thread
 
     @property
     def callbacks(self) -> tuple[HostCallback, ...]:

@@ -21,7 +21,7 @@ _RELEASES = described(
 _POLICIES = described(
     fifo="`SCHED_FIFO`: a fixed priority.",
     deadline="`SCHED_DEADLINE`: a budget in each period.",
-    other="`SCHED_OTHER`: no bound of the time until it runs.",
+    other="`SCHED_OTHER`: no bound of the time until it runs, unless it is the only such thread of an isolated core.",
 )
 _EXECUTORS = described(
     single_threaded="`SingleThreadedExecutor`: one thread, which works off a ready set.",
@@ -42,6 +42,8 @@ class ComputerSection(DescriptionSection):
     """Name by which executors refer to it."""
     cores: Count = 1
     """Number of its cores."""
+    isolated: list[CountOrNone] = entry(default_factory=list)
+    """Cores on which only threads of `executors` run, e.g. with `isolcpus`: none of the middleware or the kernel either."""
 
 
 class ThreadSection(DescriptionSection):

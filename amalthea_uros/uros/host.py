@@ -42,7 +42,8 @@ class _HostBuilder:
         return Host(
             release=RosRelease(section.ros),
             computers=tuple(
-                HostComputer(name=each.name, cores=each.cores, origin=each.location()) for each in section.computers
+                HostComputer(name=each.name, cores=each.cores, isolated=tuple(each.isolated), origin=each.location())
+                for each in section.computers
             ),
             executors=tuple(map(self._executor, section.executors)),
             topics=tuple(self._topics()),
@@ -69,6 +70,12 @@ class _HostBuilder:
                     problems.undefined(
                         "callback group", callback.group, groups, callback.location("group"), owner=f"node {node.name!r}"
                     )
+        for computer in section.computers:
+            if beyond := next((core for core in computer.isolated if core >= computer.cores), None):
+                message = f"{computer.name!r} has no core {beyond}, but the cores 0 to {computer.cores - 1}"
+                problems.error(
+                    "APP003", message, computer.location("isolated"), "Correct the number of the core, or set 'cores'."
+                )
         self._check_sources(description)
         self._check_services()
 

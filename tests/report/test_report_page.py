@@ -33,7 +33,7 @@ VOID = {"meta", "link", "br", "hr", "img", "input"}
 
 @cache
 def page_of(path, **options):
-    return report(path, duration="100 ms", **options).html
+    return report(path, **{"duration": "100 ms"} | options).html
 
 
 def parsed(page):
@@ -277,3 +277,19 @@ def test_a_summary_says_what_its_verdict_is_subject_to(tmp_path):
     assert verdict < found.index("- CHN002 warning: ") < requirements
     (row,) = [line for line in found.splitlines() if line.startswith("| factor-to-output_reaction")]
     assert "| unknown | ≤ 25 ms |" in row
+
+
+def test_executors_of_the_host_have_bounds_beside_observed_values_and_the_loads_of_their_cores():
+    shown = section(page_of(SAMPLES / "robot-with-host.yaml", duration="2 s"), "host")
+    threads, control, *_ = shown.xpath(".//table")
+    perception = [text(each) for each in threads.xpath(".//tr")[-1].xpath("./*")]
+    assert perception[:5] == ["perception", "multi-threaded", "3", "fifo, priority 60", "pc/core 1, pc/core 2, pc/core 3"]
+    assert sum(float(each.removesuffix(" %")) for each in perception[5].split(", ")) < 100
+    # On_Pose is called for each odometry: the bound is 4.8 ms, and what a run shows is less, and not lost.
+    row = next(each for each in control.xpath(".//tr") if "On_Pose" in text(each))
+    cells = [text(each) for each in row.xpath("./*")]
+    assert cells[:5] == ["On_Pose", "subscription", "-", "300 us", "4.8 ms"]
+    calls, longest, lost = cells[5:8]
+    assert int(calls) > 10
+    assert float(longest.split()[0]) < 4.8
+    assert lost == "0"

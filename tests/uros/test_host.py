@@ -42,7 +42,7 @@ def test_callbacks_are_in_the_order_of_the_file_with_timers_first():
 
 
 def test_a_host_comes_back_from_a_model(tmp_path):
-    system = describe_text(ROBOT).assembly.system
+    system = describe_text(ROBOT.replace("cores: 4}", "cores: 4, isolated: [3]}")).assembly.system
     save(build_model(system), tmp_path / "robot.amxmi")
     found = extract(load(tmp_path / "robot.amxmi"))
     assert found.system == system
@@ -62,6 +62,41 @@ def test_a_reservation_provides_its_budget_after_twice_the_rest_of_a_period():
     assert worst(reserved, "log", "On_Log") == parse_time("17 ms")
     # The other thread is preempted by two budgets, at the end of a period and at the begin of the next one.
     assert worst(reserved, "control", "On_Odom") == parse_time("7.8 ms")
+
+
+def test_the_only_thread_of_sched_other_of_an_isolated_core_waits_for_those_of_sched_fifo():
+    """As one of the lowest priority; on a core that is not isolated, or with another such thread, anything can delay it."""
+    isolated = ROBOT.replace("cores: 4}", "cores: 4, isolated: [0, 1]}")
+    other = "{policy: fifo, priority: 20, core: 0}", "{core: 0}"
+    assert worst(isolated.replace(*other), "log", "On_Log") == parse_time("4.8 ms")
+    assert worst(isolated.replace(other[0], "{core: 1}"), "log", "On_Log") == parse_time("1 ms")
+    assert worst(isolated.replace(other[0], "{core: 2}"), "log", "On_Log") is None
+    for shared in ("{core: 1}", "{}"):
+        both = isolated.replace(other[0], "{core: 1}").replace("{policy: fifo, priority: 80, core: 0}", shared)
+        assert worst(both, "log", "On_Log") is None
+    threads = isolated.replace(
+        "{name: log, thread: {policy: fifo, priority: 20", "{name: log, type: multi-threaded, threads: 2, thread: {"
+    )
+    assert worst(threads.replace("thread: {, core", "thread: {core"), "log", "On_Log") is None
+
+
+@pytest.mark.parametrize(
+    ("cores", "worst_of_log"), [(("", ""), "17 ms"), ((", core: 0", ", core: 1"), "17 ms"), ((", core: 0", ", core: 0"), None)]
+)
+def test_reservations_on_one_core_have_to_fit_on_it(cores, worst_of_log):
+    """Each of 2 ms in 10 ms and 9 ms in 10 ms has a core of its own of the four, or they are stated to share one."""
+    log, control = (
+        f"{{policy: deadline, budget: {budget} ms, period: 10 ms{core}}}" for budget, core in zip((2, 9), cores, strict=True)
+    )
+    text = ROBOT.replace("{policy: fifo, priority: 20, core: 0}", log).replace("{policy: fifo, priority: 80, core: 0}", control)
+    assert worst(text, "log", "On_Log") == (None if worst_of_log is None else parse_time(worst_of_log))
+
+
+def test_each_thread_of_a_multi_threaded_executor_has_a_reservation_of_its_own():
+    """Both can take the core from the other executor, each twice in a row: 3.8 ms and two times two budgets of 1 ms."""
+    log = "{name: log, type: multi-threaded, threads: 2, thread: {policy: deadline, budget: 1 ms, period: 20 ms}"
+    text = ROBOT.replace("{name: log, thread: {policy: fifo, priority: 20, core: 0}", log)
+    assert worst(text, "control", "On_Odom") == parse_time("7.8 ms")
 
 
 @pytest.mark.parametrize(
@@ -144,6 +179,7 @@ def test_a_timer_that_reads_what_a_callback_writes_adds_its_period():
     [
         ("executor: log", "executor: lag", "undefined executor of the host 'lag'"),
         ("core: 0}}\n    - {name: log", "core: 4}}\n    - {name: log", "'control' runs on core 4"),
+        ("cores: 4}", "cores: 4, isolated: [0, 4]}", "'pc' has no core 4"),
         ("name: On_Log, topic", "name: On_Odom, topic", "duplicate callback of the host name 'On_Odom'"),
         ("On_Odom, topic: odom", "On_Odom, group: g, topic: odom", "undefined callback group 'g'"),
         ("chains:", "  topics: [{topic: odom, rate: 10 Hz}]\nchains:", "the rate of 'odom' is stated, but follows"),

@@ -3,7 +3,8 @@
 Linux (sched(7)): SCHED_DEADLINE before SCHED_FIFO before SCHED_OTHER; among threads of SCHED_FIFO the higher priority is first, and
 one of equal priority runs until it waits. A reservation of SCHED_DEADLINE provides its budget in each period, and nothing for twice
 the rest of a period in the worst case (I. Shin and I. Lee, RTSS 2003). That holds if each reservation can have a core of its own,
-or all of them fit on the only core; the global EDF of several cores promises less.
+or all of them fit on their only core; the global EDF of several cores promises less. SCHED_OTHER is fair among its threads, so that
+any other one can delay a thread, unless it is the only one of its core.
 """
 
 from __future__ import annotations
@@ -44,19 +45,24 @@ def processor_of(executor: HostExecutor, host: Host) -> HostProcessor:
     UnknownError : something that is not specified can delay it, or no method covers it.
     """
     name, thread = executor.name, executor.thread
-    if thread.policy is HostPolicy.OTHER:
+    if host.is_fairly_shared(executor):
         raise UnknownError(
-            f"the thread of {name!r} has the policy 'other', so that any other thread of the computer can delay it; set 'thread', e.g. "
+            f"the thread of {name!r} has the policy 'other', so that any other thread of its cores can delay it; set 'thread', e.g. "
             "{policy: fifo, priority: 80, core: 0}"
         )
-    neighbours = [other for other in host.executors if other.computer == executor.computer and other.name != name]
+    cores = _cores(executor, host)
+    rivals = [
+        other
+        for other in host.executors
+        if other.computer == executor.computer and other.name != name and cores.intersection(_cores(other, host))
+    ]
+    reserved = [other for other in rivals if other.thread.policy is HostPolicy.DEADLINE]
     if thread.policy is HostPolicy.DEADLINE:
-        return _reserved(executor, neighbours, host)
-    cores = set(thread.cores) or set(range(_cores(executor, host)))
+        return _reserved(executor, reserved, host)
     if executor.kind is not HostExecutorKind.MULTI_THREADED and len(cores) > 1:
         raise UnknownError(f"the thread of {name!r} can run on several cores; set 'core' of its 'thread'")
-    higher = tuple(other for other in neighbours if _can_preempt(other, executor, cores))
-    reservations = tuple(map(_reservation, filter(_is_reserved, neighbours)))
+    higher = tuple(other for other in rivals if _can_preempt(other, executor))
+    reservations = tuple(_reservation(other) for other in reserved for _ in range(other.threads))
     if len(cores) > 1 and (higher or reservations):
         raise UnknownError(
             f"other threads can preempt those of {name!r}, which no published method covers; give it cores of its own"
@@ -64,28 +70,28 @@ def processor_of(executor: HostExecutor, host: Host) -> HostProcessor:
     return HostProcessor(higher, reservations, cores=len(cores))
 
 
-def _cores(executor: HostExecutor, host: Host) -> int:
-    return next(computer.cores for computer in host.computers if computer.name == executor.computer)
+def _cores(executor: HostExecutor, host: Host) -> set[int]:
+    """The cores on which the threads of an executor may run."""
+    return set(executor.thread.cores) or set(range(host.computer_of(executor).cores))
 
 
-def _is_reserved(executor: HostExecutor) -> bool:
-    return executor.thread.policy is HostPolicy.DEADLINE
+def _can_preempt(other: HostExecutor, executor: HostExecutor) -> bool:
+    return other.thread.policy is HostPolicy.FIFO and other.thread.priority >= executor.thread.priority
 
 
-def _can_preempt(other: HostExecutor, executor: HostExecutor, cores: set[int]) -> bool:
-    thread = other.thread
-    shares_core = not thread.cores or bool(cores.intersection(thread.cores))
-    return thread.policy is HostPolicy.FIFO and thread.priority >= executor.thread.priority and shares_core
-
-
-def _reserved(executor: HostExecutor, neighbours: list[HostExecutor], host: Host) -> HostProcessor:
-    thread, cores = executor.thread, _cores(executor, host)
-    reserved = [executor, *filter(_is_reserved, neighbours)]
+def _reserved(executor: HostExecutor, rivals: list[HostExecutor], host: Host) -> HostProcessor:
+    """The reservation of an executor; rivals have one on cores of it."""
+    thread, cores, reserved = executor.thread, _cores(executor, host), [executor, *rivals]
     if executor.kind is HostExecutorKind.MULTI_THREADED:
         raise UnknownError(f"no published method covers the reservation of the multi-threaded executor {executor.name!r}")
-    share = sum(Fraction(each.thread.budget, each.thread.period) for each in reserved)
-    if len(reserved) > cores and (cores > 1 or share > 1):
+    threads = sum(each.threads for each in reserved)
+    share = sum(each.threads * Fraction(each.thread.budget, each.thread.period) for each in reserved)
+    if threads > len(cores) and (len(cores) > 1 or share > 1):
         raise UnknownError(f"more reservations than cores on {executor.computer!r}: that of {executor.name!r} can be late")
+    if any(_cores(each, host) != cores for each in rivals):
+        raise UnknownError(
+            f"the reservation of {executor.name!r} shares some of its cores with others; set the same cores for all"
+        )
     return HostProcessor(supply=Supply(budget=thread.budget, period=thread.period, wait=2 * (thread.period - thread.budget)))
 
 

@@ -56,7 +56,7 @@ from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, frequency_text, time_text
 
 BAR = 20
-_HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
+HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
 _CALLBACKS = "Callbacks (from the activation of the process to the end of the callback)"
 _EFFECTS = {Effect.BETTER: Tone.GOOD, Effect.WORSE: Tone.BAD, Effect.UNKNOWN: Tone.UNKNOWN}
 
@@ -293,12 +293,13 @@ def _host_executor(executor: ExecutorResult) -> Section:
     return section(
         f"Executor {executor.name} of the host (from the arrival of a message, or when a timer is due, to the end of the callback)",
         Sentences([executor.reason] if executor.reason else []),
-        table(f"Executor {executor.name} of the host", _HOST_COLUMNS, map(_host_row, executor.handles)),
+        table(f"Executor {executor.name} of the host", HOST_COLUMNS, map(host_row, executor.handles)),
         Sentences(losses),
     )
 
 
-def _host_row(handle: HandleResult) -> tuple[Cell, ...]:
+def host_row(handle: HandleResult) -> tuple[Cell, ...]:
+    """A callback of the host, with its bounds."""
     lost, response = "-" if handle.lost is None else handle.lost.what, handle.response
     method = f"{response.method} ({response.source})" if response.worst is not None else UNKNOWN
     return (

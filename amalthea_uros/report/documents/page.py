@@ -49,7 +49,7 @@ from amalthea_uros.report.documents.judged import (
     why,
     worst_chains,
 )
-from amalthea_uros.report.documents.observed import observed_section
+from amalthea_uros.report.documents.observed import host_section, observed_section
 from amalthea_uros.report.documents.worst_cases import gantt_section, histogram_section, hops_section
 from amalthea_uros.report.pictures.load_bars import draw_loads
 from amalthea_uros.report.pictures.response_bars import draw_responses
@@ -248,6 +248,7 @@ _SECTIONS: Sequence[Callable[[ReportContent], Section | None]] = (
     _load_section,
     _response_times_section,
     _executors_section,
+    host_section,
     observed_section,
     gantt_section,
     histogram_section,

@@ -5,7 +5,8 @@
 - Sporadic servers (B. Sprunt, L. Sha and J. Lehoczky, "Aperiodic task scheduling for hard-real-time systems", Real-Time Systems 1,
   1989): what was used comes back one period after the server became active.
 - Constant bandwidth servers (L. Abeni and G. Buttazzo, "Integrating multimedia applications in hard real-time systems", RTSS 1998): a
-  new budget comes with a later deadline.
+  new budget comes with a later deadline. SCHED_DEADLINE of Linux throttles them: what has used its budget up waits until the deadline
+  (sched-deadline.rst, section 2).
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def activate_server(m: Memory, server: int) -> None:
     while server:
         if not m[server + IS_ACTIVE]:
             m[server + IS_ACTIVE] = 1
-            if m[server + SERVER_KIND] == CONSTANT_BANDWIDTH:
+            if _has_deadline(m, server) and m[server + SERVER_AT] == NEVER:
                 # A new deadline, unless the rest of the budget fits to the old one.
                 left = m[server + SERVER_DEADLINE] - now
                 if m[server + BUDGET] * m[server + PERIOD_RATIO] >= left * m[server + BUDGET_RATIO]:
@@ -38,9 +39,13 @@ def activate_server(m: Memory, server: int) -> None:
             elif m[server + SERVER_KIND] == SPORADIC:
                 m[server + ACTIVE_SINCE] = now
                 m[server + BUDGET_BEFORE] = m[server + BUDGET]
-        if m[server + SERVER_KIND] == CONSTANT_BANDWIDTH:
+        if _has_deadline(m, server):
             pass_deadline_on(m, server)
         server = m[server + PARENT]
+
+
+def _has_deadline(m: Memory, server: int) -> bool:
+    return m[server + SERVER_KIND] == CONSTANT_BANDWIDTH or m[server + SERVER_KIND] == THROTTLED_BANDWIDTH
 
 
 def pass_deadline_on(m: Memory, server: int) -> None:
@@ -74,6 +79,8 @@ def exhaust(m: Memory, server: int) -> None:
         m[server + BUDGET] = m[server + FULL_BUDGET]
         m[server + SERVER_DEADLINE] += m[server + SERVER_PERIOD]
         pass_deadline_on(m, server)
+    elif m[server + SERVER_KIND] == THROTTLED_BANDWIDTH:
+        m[server + SERVER_AT] = max(m[server + SERVER_DEADLINE], m[NOW])
     elif m[server + SERVER_KIND] == SPORADIC:
         plan(m, server)
         m[server + ACTIVE_SINCE] = m[NOW]
@@ -101,6 +108,11 @@ def replenish(m: Memory, server: int) -> None:
     """A budget comes back."""
     if m[server + SERVER_KIND] == SPORADIC:
         _replenish_as_planned(m, server)
+    elif m[server + SERVER_KIND] == THROTTLED_BANDWIDTH:
+        m[server + SERVER_AT] = NEVER
+        m[server + BUDGET] = m[server + FULL_BUDGET]
+        m[server + SERVER_DEADLINE] += m[server + SERVER_PERIOD]
+        pass_deadline_on(m, server)
     else:
         m[server + SERVER_AT] += m[server + SERVER_PERIOD]
         is_idle_polling = m[server + SERVER_KIND] == POLLING_SERVER and not m[server + IS_ACTIVE]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 
-from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.callbacks import taker
 from amalthea_uros.perf.activities import Communication, Trigger
@@ -106,7 +107,7 @@ class ChainCompiler:
         self.routes.append(FollowedRoute(chain.name, text))
         entity = self.resources.entities.number(EntityKind.CHAIN, chain.name)
         parts = stages(found, self.resources.context.settings.communication)
-        records: list[int] = []
+        records: list[dict[str, int]] = []
         for number, stage in enumerate(parts):
             is_last = number == len(parts) - 1
             needed = (1 << len(self._positions(stage))) - 1
@@ -121,13 +122,15 @@ class ChainCompiler:
             fields |= dict.fromkeys((layout.VALUE, layout.TAKEN, layout.LINK, layout.OUT), -1)
             if records:
                 fields[layout.BEFORE_STAGE] = self._handed_over(parts[number - 1], records[-1], stage)
-            records.append(image.record(layout.STAGE_SIZE, fields))
-        for stage, record in zip(parts, records, strict=True):
-            self._stage(stage, record)
+            processes = self.resources.executors.messages.host.threads_beside(stage.process.name)
+            records.append({process: image.record(layout.STAGE_SIZE, fields) for process in processes})
+        for stage, by_process in zip(parts, records, strict=True):
+            for process, record in by_process.items():
+                self._stage(replace(stage, process=self.resources.context.system.processes[process]), record)
 
-    def _handed_over(self, before: Stage, record: int, stage: Stage) -> int:
+    def _handed_over(self, before: Stage, stages: Mapping[str, int], stage: Stage) -> int:
         """Where a stage finds what the one before has passed on: there, or where a message puts it that carries it."""
-        messages = self.resources.executors.messages
+        messages, record = self.resources.executors.messages, stages[before.process.name]
         transmissions = messages.system.transmissions
         sent = transmissions.get(before.process.name)
         publisher, subscription = self._on_host(before), self._on_host(stage)
@@ -136,7 +139,7 @@ class ChainCompiler:
             assert source is not None
             assert target is not None
             received = self.resources.image.record(layout.STAGE_SIZE, {layout.LINK: -1})
-            messages.carry_on_host(source, target, record, received + layout.LINK)
+            messages.carry_on_host(source, target, stages, received + layout.LINK)
             return received
         if sent is None or sent.name == stage.process.name:
             return record

@@ -29,7 +29,7 @@ def add_thread(body: Body, process: Process, executor: HostExecutor) -> None:
         code.add(layout.BEGIN_EXECUTION, measured)
         body.activities([activity])
         code.add(layout.END_EXECUTION, measured)
-        for publication in messages.host.publications(callback, messages.transmissions):
+        for publication in messages.host.publications(callback, process.name, messages.transmissions):
             code.add(layout.HOST_PUBLISH, publication)
         code.add(layout.HAVE_CALLED, thread)
         code.add(layout.JUMP, done)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.activities import Call
@@ -49,7 +49,7 @@ class HostRecords:
     handles: dict[str, int] = field(default_factory=dict)
     queues: dict[str, int] = field(default_factory=dict)
     arrivals: list[tuple[int, StimulusOccurrences]] = field(default_factory=list)
-    _stamps: dict[tuple[str, str], list[int]] = field(default_factory=dict)
+    _stamps: dict[tuple[str, str, str], list[int]] = field(default_factory=dict)
 
     @property
     def is_simulated(self) -> bool:
@@ -74,6 +74,11 @@ class HostRecords:
         if thread not in self.threads:
             return None
         return next(each for each in self.resources.context.system.host.executors if thread in thread_names(each))
+
+    def threads_beside(self, process: str) -> tuple[str, ...]:
+        """The threads of the executor of a thread, itself included; any other process is alone."""
+        executor = self.executor_of(process)
+        return (process,) if executor is None else thread_names(executor)
 
     def callback_at(self, position: ActivityPosition | None) -> HostCallback | None:
         """The callback of which an activity is the call by a thread."""
@@ -180,23 +185,28 @@ class HostRecords:
         topic = plain_topic(transmission.topic)
         return [self._line(each, topic) for each in self._subscribing(topic)]
 
-    def publications(self, callback: HostCallback, transmissions: dict[str, int]) -> Iterator[int]:
-        """The records of what a callback publishes at its end: one for each subscription, and each message to a controller."""
+    def publications(self, callback: HostCallback, thread: str, transmissions: dict[str, int]) -> Iterator[int]:
+        """The records of what a callback publishes at its end in a thread, for each subscription and each message to a controller."""
         for topic in callback.publishes:
             for each in self._subscribing(topic):
-                yield self._publication(callback, each.name, self._line(each, topic))
+                yield self._publication((callback.name, thread, each.name), self._line(each, topic))
             for sent in sent_by_host(self.resources.context.system, topic):
                 delay = self.lines.delay(f"from host {sent.name}", self._latency(topic), sent.agent)
-                yield self._publication(
-                    callback, sent.name, self.lines.line_of(transmissions[sent.name], delay, layout.TO_WIRE)
-                )
+                line = self.lines.line_of(transmissions[sent.name], delay, layout.TO_WIRE)
+                yield self._publication((callback.name, thread, sent.name), line)
 
-    def carry(self, callback: HostCallback, target: str, place: int, index: int) -> None:
-        """Have what a callback publishes to a subscription, or as a message to a controller, carry a value from a place in memory."""
-        self._stamps.setdefault((callback.name, target), []).extend((place, index))
+    def carry(self, callback: HostCallback, target: str, places: Mapping[str, int], index: int) -> None:
+        """Have what a callback publishes to a subscription, or as a message to a controller, carry a value.
 
-    def _publication(self, callback: HostCallback, target: str, line: int) -> int:
-        first, end = self.resources.image.items(self._stamps.get((callback.name, target), ()))
+        Parameters
+        ----------
+        places : of the value in memory, by thread
+        """
+        for thread, place in places.items():
+            self._stamps.setdefault((callback.name, thread, target), []).extend((place, index))
+
+    def _publication(self, carried: tuple[str, str, str], line: int) -> int:
+        first, end = self.resources.image.items(self._stamps.get(carried, ()))
         fields = {layout.PUBLISHES_ON: line, layout.PUBLISHED_STAMPS: first, layout.PUBLISHED_STAMPS_END: end}
         return self.resources.image.record(layout.HOST_PUBLICATION_SIZE, fields)
 

@@ -16,16 +16,19 @@ from amalthea_uros.perf.hardware import Clock, Core, Structure, StructureKind
 from amalthea_uros.perf.host import Host, HostCallback, HostComputer, HostExecutor, HostExecutorKind, HostPolicy
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.network import Direction, Purpose, Transmission, plain_topic
-from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
+from amalthea_uros.perf.os import OperatingSystem, Parameter, Parent, Policy, Scheduler
 from amalthea_uros.perf.software import Runnable, Task
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
+from amalthea_uros.units import Duration
 
 #: With what the names begin that stand for the host; other names cannot contain it.
 _PREFIX = "host/"
 #: A tick is a picosecond, so that execution times of the host are exact.
 _FREQUENCY = Fraction(10**12)
 _CLOCK = f"{_PREFIX}clock"
+#: The priorities of SCHED_FIFO are up to 99.
+_ABOVE_PRIORITIES = 100
 
 
 def with_host(system: System) -> System:
@@ -42,7 +45,9 @@ def with_host(system: System) -> System:
             clocks=(*hardware.clocks, Clock(name=_CLOCK, frequency=_FREQUENCY)),
             structures=(*hardware.structures, *map(_structure, host.computers)),
         ),
-        os=replace(system.os, systems=(*system.os.systems, *map(_operating_system, host.computers))),
+        os=replace(
+            system.os, systems=(*system.os.systems, *(_operating_system(computer, host) for computer in host.computers))
+        ),
         stimuli=replace(system.stimuli, stimuli=(*system.stimuli.stimuli, *(InterProcess(name=name) for _, name in threads))),
         software=replace(
             software,
@@ -55,22 +60,14 @@ def with_host(system: System) -> System:
 
 
 def _located(event: Event, host: Host) -> Event:
-    """An event that stands for a callback of the host as one of its runnable, if one thread alone calls it."""
+    """An event that stands for a callback of the host as one of its runnable, in whichever thread calls it."""
     if not isinstance(event, CustomEvent):
         return event
     changes = {"start": RunnableChange.START, "finish": RunnableChange.TERMINATE}
-    for executor in host.executors:
-        threads = thread_names(executor)
-        for callback in executor.callbacks if len(threads) == 1 else ():
-            for moment, change in changes.items():
-                if event.name == f"{callback.name}_{moment}":
-                    return RunnableEvent(
-                        name=event.name,
-                        runnable=runnable_name(callback),
-                        change=change,
-                        process=threads[0],
-                        origin=event.origin,
-                    )
+    for callback in host.callbacks:
+        for moment, change in changes.items():
+            if event.name == f"{callback.name}_{moment}":
+                return RunnableEvent(name=event.name, runnable=runnable_name(callback), change=change, origin=event.origin)
     return event
 
 
@@ -129,10 +126,12 @@ def _obstacles(system: System) -> Iterator[str]:
     topics = {topic.name: topic for topic in host.topics}
     published = {topic for callback in host.callbacks for topic in callback.publishes}
     for executor in host.executors:
-        if executor.thread.policy is HostPolicy.OTHER:
+        if host.is_fairly_shared(executor):
             yield f"the thread of {executor.name!r} has the policy 'other', so that it is unknown what delays it"
-        if executor.thread.policy is HostPolicy.DEADLINE:
-            yield f"the reservation of {executor.name!r} is not simulated"
+        if _is_reserved(executor) and len(_allowed(executor, host)) > 1:
+            yield f"the reservation of {executor.name!r} has several cores; set 'core' of its 'thread'"
+        if _is_reserved(executor) and executor.kind is HostExecutorKind.MULTI_THREADED:
+            yield f"the reservations of the multi-threaded executor {executor.name!r} are not simulated"
         for callback in executor.callbacks:
             if callback.execution.most is None:
                 yield f"the execution time of {callback.name!r} has no maximum"
@@ -169,21 +168,58 @@ def _structure(computer: HostComputer) -> Structure:
     return Structure(name=f"{_PREFIX}{computer.name}", kind=StructureKind.ECU, cores=cores)
 
 
+def host_cores(executor: HostExecutor, host: Host) -> tuple[str, ...]:
+    """The names of the cores on which the threads of an executor may run."""
+    return _cores(executor.computer, _allowed(executor, host))
+
+
+def _allowed(executor: HostExecutor, host: Host) -> tuple[int, ...]:
+    """The cores on which the threads of an executor may run."""
+    return executor.thread.cores or tuple(range(host.computer_of(executor).cores))
+
+
 def _cores(computer: str, numbers: range | tuple[int, ...]) -> tuple[str, ...]:
     return tuple(f"{_PREFIX}{computer}/core {number}" for number in numbers)
 
 
-def _operating_system(computer: HostComputer) -> OperatingSystem:
+def _operating_system(computer: HostComputer, host: Host) -> OperatingSystem:
+    """The scheduler of a computer: by priority, and above all priorities the reservations by their deadlines."""
     cores, name = _cores(computer.name, range(computer.cores)), f"{_PREFIX}{computer.name}"
     scheduler = Scheduler(name=name, policy=Policy.FIXED_PRIORITY_PREEMPTIVE, cores=cores, executing_core=cores[0])
-    return OperatingSystem(name=name, schedulers=(scheduler,))
+    above = Parent(scheduler=name, priority=_ABOVE_PRIORITIES)
+    by_deadline = Scheduler(name=_by_deadline(computer.name), policy=Policy.EARLIEST_DEADLINE_FIRST, parent=above)
+    reserved = [each for each in host.executors if each.computer == computer.name and _is_reserved(each)]
+    servers = (_server(executor, host) for executor in reserved if executor.callbacks)
+    return OperatingSystem(name=name, schedulers=(scheduler, by_deadline, *servers))
+
+
+def _by_deadline(computer: str) -> str:
+    return f"{_PREFIX}{computer}/deadlines"
+
+
+def _server(executor: HostExecutor, host: Host) -> Scheduler:
+    budget, period = (
+        Parameter(name=name, values=(Duration(time),))
+        for name, time in (("capacity", executor.thread.budget), ("period", executor.thread.period))
+    )
+    return Scheduler(
+        name=host_name(executor),
+        policy=Policy.CONSTANT_BANDWIDTH_SERVER,
+        cores=host_cores(executor, host),
+        parent=Parent(scheduler=_by_deadline(executor.computer), deadline=executor.thread.period, parameters=(budget, period)),
+    )
+
+
+def _is_reserved(executor: HostExecutor) -> bool:
+    return executor.thread.policy is HostPolicy.DEADLINE
 
 
 def _allocation(executor: HostExecutor, thread: str) -> TaskAllocation:
+    is_reserved = _is_reserved(executor)
     return TaskAllocation(
         task=thread,
-        scheduler=f"{_PREFIX}{executor.computer}",
-        priority=executor.thread.priority,
+        scheduler=host_name(executor) if is_reserved else f"{_PREFIX}{executor.computer}",
+        priority=None if is_reserved else executor.thread.priority,
         cores=_cores(executor.computer, executor.thread.cores),
         origin=executor.origin,
     )

@@ -47,13 +47,12 @@ class MessageRoutes:
         return {tuple(path): [self._route(self._with_takers([events[name] for name in path]))] for path in paths}
 
     def _check_host(self, events: Iterable[Event]) -> None:
-        """Refuse callbacks of the host that are not simulated, or that several threads call."""
+        """Refuse callbacks of the host that are not simulated."""
         system = self.context.system
         for event in events:
             callback = system.callback_of_host_event.get(event.name)
             if isinstance(event, CustomEvent) and callback is not None:
-                reason = why_not_simulated(system) or f"several threads call {callback.name!r}"
-                raise UnknownError(f"it passes callbacks of the host: {reason}")
+                raise UnknownError(f"it passes callbacks of the host: {why_not_simulated(system)}")
 
     def _with_takers(self, events: Sequence[Event]) -> list[Event]:
         """The events, and those of callbacks that only take a message for a task of its own."""
@@ -70,7 +69,13 @@ class MessageRoutes:
         return completed
 
     def _occurrences(self, event: Event) -> list[EventOccurrence]:
-        return self.context.dataflow.events.of(event)
+        """Where an event can occur; the first thread of an executor of the host stands for all of them."""
+        host = self.messages.host
+        return [
+            each
+            for each in self.context.dataflow.events.of(event)
+            if each.process.name == next(iter(host.threads_beside(each.process.name)))
+        ]
 
     def _transmission(self, event: Event) -> Transmission | None:
         """The message of which an event is, if it is one."""

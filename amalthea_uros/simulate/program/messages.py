@@ -333,14 +333,20 @@ class MessageRecords:
             self._stamp(self.handles[target], layout.HANDLE_STAMPS, place, index)
 
     def carry_on_host(
-        self, source: Transmission | HostCallback, target: Transmission | HostCallback, stage: int, place: int
+        self, source: Transmission | HostCallback, target: Transmission | HostCallback, stages: Mapping[str, int], place: int
     ) -> None:
-        """Have a message of the host, or to it, carry the value of a stage of a chain to a place in memory."""
+        """Have a message of the host, or to it, carry the value of a stage of a chain to a place in memory.
+
+        Parameters
+        ----------
+        stages : the records of the stage, by process
+        """
+        places = {process: stage + layout.LINK for process, stage in stages.items()}
         index, self._carried = self._carried, self._carried + 1
         if isinstance(source, Transmission):
-            self._stamp(self.transmissions[source.name], layout.STAMPS_FROM, stage + layout.LINK, index)
+            self._stamp(self.transmissions[source.name], layout.STAMPS_FROM, places[source.name], index)
         else:
-            self.host.carry(source, target.name, stage + layout.LINK, index)
+            self.host.carry(source, target.name, places, index)
         if isinstance(target, Transmission):
             self._stamp(self.transmissions[target.name], layout.STAMPS_TO, place, index)
         else:

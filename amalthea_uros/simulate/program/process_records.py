@@ -12,6 +12,7 @@ from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.program.body import process_code
 from amalthea_uros.simulate.program.chains import ChainCompiler
 from amalthea_uros.simulate.program.decision_programs import decision_code
+from amalthea_uros.simulate.program.host_system import host_name
 from amalthea_uros.simulate.program.image import Image, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched, Dispatching
@@ -72,7 +73,8 @@ class HardwareRecords:
         for name, record in self.servers.items():
             server = self.dispatching.servers[name]
             policy = standard_policy(server.scheduler.policy)
-            kind = _KINDS[Policy(policy or "")]
+            is_host = name in map(host_name, self.resources.context.system.host.executors)
+            kind = layout.THROTTLED_BANDWIDTH if is_host else _KINDS[Policy(policy or "")]
             if policy == Policy.CONSTANT_BANDWIDTH_SERVER_WITH_CASH:
                 self.resources.context.notes.assume(f"the server {name!r} does not reuse what other servers leave")
             budget, period = self.resources.time(server.budget), self.resources.time(server.period)

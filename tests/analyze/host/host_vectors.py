@@ -30,14 +30,15 @@ TYPES = {
 }
 
 
-def entries():
-    """The entries with a distribution that can be described, timers and subscriptions only, and any phases."""
+def every_entry():
+    """All entries."""
     files = sorted(FOLDER.glob("*.json")) if FOLDER.exists() else []
-    for entry in (entry for path in files for entry in json.loads(path.read_text())["systems"]):
-        system = entry["system"]
-        is_covered = all(each["distro"] != "dashing" for each in system["executors"])
-        if is_covered and {each["kind"] for each in system["callbacks"]} <= {"timer", "subscription"}:
-            yield entry
+    return [entry for path in files for entry in json.loads(path.read_text())["systems"]]
+
+
+def entries():
+    """The entries with a distribution that can be described."""
+    return [entry for entry in every_entry() if all(each["distro"] != "dashing" for each in entry["system"]["executors"])]
 
 
 def _thread(executor):
