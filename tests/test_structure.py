@@ -24,7 +24,7 @@ LINES = {
     "analyze": 8798,
     "bridge": 2867,
     "cli": 2459,
-    "compare": 3859,
+    "compare": 3862,
     "design": 6529,
     "diagnostics": 43,
     "difference": 790,

@@ -61,7 +61,7 @@ EDITED = {
         ["rclc_executor.order=Control,On_Imu,On_Command"],
         "order: [Control, On_Imu, On_Command]",
     ),
-    "an exact time": (ADVANCED, ["Message_Factor.offset=0.0005ms"], "offset: 500 ns"),
+    "an exact time": (ADVANCED, ["Message_Factor.offset=0.0005ms"], "offset: 0.0005 ms"),
 }
 
 
@@ -116,7 +116,7 @@ def test_what_a_description_cannot_state_is_refused(changes, reason):
 def test_messages_come_as_before_if_the_change_says_so():
     result = edited(ADVANCED, "Executor_Task.period=0.5ms", "Message_Factor.arrival_period=20ms")
     assert "rate: 50 Hz" in result.text
-    assert "Executor_Task, period: 500 us" in result.text
+    assert "Executor_Task, period: 0.5 ms" in result.text
 
 
 # How the text is kept
@@ -204,6 +204,12 @@ def test_a_mapping_that_several_share_is_not_changed():
         with_value(text, ("b", "min"), "3 us")
     with pytest.raises(InvalidArgumentError, match="shared through the anchor &all"):
         with_value(text, ("a",), {"min": "3 us", "max": "4 us"})
+
+
+def test_a_list_that_is_merged_is_not_changed():
+    tasks = "x-base: &base\n  tasks:\n    - {name: A, period: 10 ms, execution_time: 1 ms}\n<<: *base\n"
+    with pytest.raises(InvalidArgumentError, match="merged with '<<'"):
+        edited(f"amuros: 1\nname: m\nhardware: single-core\n{tasks}", "A.priority=5")
 
 
 def test_comments_are_replaced_by_newer_ones():

@@ -111,7 +111,9 @@ class DescribedCallbacks:
         chosen = next((change.value.split(",") for change in own if change.key == "order"), list(self.executor.order))
         order = [name for name in chosen if inside[name]]
         others = tuple(change for change in own if change.key != "order")
-        return others if order == self.executor.order else (*others, Change(self.executor.name, "order", ",".join(order)))
+        return (
+            others if order == self.executor.order else (*others, Change(self.executor.name, "order", ",".join(order) or "[]"))
+        )
 
 
 def _demands(system: System) -> list[object]:
