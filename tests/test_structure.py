@@ -25,7 +25,7 @@ LINES = {
     "bridge": 2867,
     "cli": 2459,
     "compare": 3862,
-    "design": 6529,
+    "design": 6504,
     "diagnostics": 43,
     "difference": 790,
     "editor": 656,

@@ -35,7 +35,7 @@ def the_key(target: str, keys: Sequence[DescriptionKey]) -> DescriptionKey | Non
     ------
     InvalidArgumentError : the name means several keys.
     """
-    return only_one(target, matching(target, keys), "description", lambda found: [short_name(each, keys) for each in found])
+    return only_one(target, matching(target, keys), "description", lambda several: [short_name(each, keys) for each in several])
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What of a description states the values of what is built from it, such as the runnable of a callback."""
+"""The values of a description that decide about objects that are built from it, such as the runnable of a callback."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class BuiltObjects:
         return self.values.description
 
     def assignments(self, change: Change) -> Sequence[Assignment]:
-        """What has to be written for a change.
+        """The edits for a change.
 
         Raises
         ------
@@ -69,12 +69,12 @@ class BuiltObjects:
         """
         if change.key == "memory":
             return list(self._memory(change))
-        found = [owner for owner in self._owners(change.object) if self._has(owner, change.key)]
-        if not found:
+        holders = [owner for owner in self._owners(change.object) if self._has(owner, change.key)]
+        if not holders:
             raise InvalidArgumentError(self._refusal(change))
         collected = Assignments(self.text, {})
         try:
-            for owner in found:
+            for owner in holders:
                 self._add(collected, owner, change)
         except ValueError as error:
             raise InvalidArgumentError(f"{change}: {error}") from None
@@ -149,10 +149,10 @@ class BuiltObjects:
         ------
         InvalidArgumentError : it has none, or its parts are stated one by one.
         """
-        found = self._owners(name)
-        if not found:
+        holders = self._owners(name)
+        if not holders:
             raise InvalidArgumentError(self._refusal(Change(name, "execution_time", "")))
-        return [self._execution_time(owner) for owner in found]
+        return [self._execution_time(owner) for owner in holders]
 
     def knows(self, name: str) -> bool:
         """Whether the description has an object of a name."""
@@ -275,7 +275,7 @@ class BuiltObjects:
         return (*path, "on", name), time.on.get(name, time.on.get("default"))
 
     def _publishing(self, section: CallbackSection) -> Time:
-        """What publishing adds to the execution time of a callback."""
+        """The part of publishing in the execution time of a callback."""
         sent = self._outgoing.get(id(section), ())
         publish = self.description.middleware.publish
         return _constant((part for message in sent for part in message_cost(publish, message.size)), section.name)

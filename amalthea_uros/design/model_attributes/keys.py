@@ -184,7 +184,7 @@ def the_key(target: str, keys: Sequence[ModelKey]) -> ModelKey | None:
     ------
     InvalidArgumentError : the name means several keys.
     """
-    return only_one(target, matching(target, keys), "model", lambda found: list(short_names(found, keys).values()))
+    return only_one(target, matching(target, keys), "model", lambda several: list(short_names(several, keys).values()))
 
 
 def short_names(some: Sequence[ModelKey], keys: Iterable[ModelKey]) -> dict[ModelKey, str]:
