@@ -216,7 +216,8 @@ def calibrate(
         refuse_input(target, "-o")
     is_diff = target is None or is_dry_run
     outputs = _beside_diff(outputs) if is_diff else beside_files(outputs, [("-o", target)])
-    found = calibrate_file(description, [measure_file(trace, reading) for trace in traces], options)
+    with working("Calibrating", is_computing=False):
+        found = calibrate_file(description, [measure_file(trace, reading) for trace in traces], options)
     show_findings(found.findings)
     if is_diff:
         show_text(FilesDiff((FileChange(found.path, found.before, found.text),), "calibrated"))

@@ -20,6 +20,7 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parameters import INPUT, MODEL, OUTPUT, OUTPUT_FILE, Offer
+from amalthea_uros.cli.patience import working
 from amalthea_uros.diagnostics import Severity, worst
 from amalthea_uros.metamodel.versions import supported_versions, version_key
 from amalthea_uros.services.init import DEFAULT_BOARD, catalogue, example_names, init_from_board, init_from_example
@@ -85,7 +86,8 @@ def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: b
             raise click.UsageError("--board is for source code; a recording of ROS 2 is that of the host")
         result = import_recording(sources[0], target, force=force)
     else:
-        result = import_code(sources, target, board=board, force=force)
+        with working("Reading", is_computing=False):
+            result = import_code(sources, target, board=board, force=force)
     show_findings(result.findings)
     if not is_stream(target):
         show_text(result)
@@ -132,9 +134,10 @@ def build(
 
     is_filter = target is None and description == STANDARD_INPUT
     outputs = beside_files(outputs, [("-o", STANDARD_OUTPUT if is_filter else target)])
-    result = build_file(
-        description, target, version, platform, compress, force, with_bus=with_bus, tool=BuildTarget(tool) if tool else None
-    )
+    with working("Building", is_computing=False):
+        result = build_file(
+            description, target, version, platform, compress, force, with_bus=with_bus, tool=BuildTarget(tool) if tool else None
+        )
     show_findings(result.findings)
     show_summaries(result.model, project_settings(description).targets)
     write_outputs(outputs, result)

@@ -23,7 +23,7 @@ from amalthea_uros.cli.options import (
     table_option,
     workers_options,
 )
-from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_result
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_result
 from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, Parsed, assignment, picture_path
 from amalthea_uros.cli.patience import working
 from amalthea_uros.cli.pictures import Pictures
@@ -172,7 +172,7 @@ def simulate(
     traced = (trace_window or (0, duration)) if traces else None
     options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), settings=settings, traced=traced, labels=labels)
     if is_campaign:
-        with progress(count_runs(sweeps, runs), "Simulating") as bar:
+        with working("Simulating", count_runs(sweeps, runs)) as progress:
             campaign = simulate_campaign(
                 paths,
                 options,
@@ -180,14 +180,15 @@ def simulate(
                 sweeps=sweeps,
                 repetitions=runs,
                 with_bus=with_bus,
-                on_outcome=lambda _outcome: bar.update(1),
+                on_outcome=progress.step,
                 **where,
             )
         sys.exit(_show_campaign(campaign, table, outputs))
     if trace_window is not None and trace_window[0] >= duration:
         start, end = time_text(trace_window[0]), time_text(duration)
         raise click.UsageError(f"the window of the trace starts at {start}, but the run ends at {end}")
-    changed = open_changed(paths, settings, changes, with_bus=with_bus)
+    with working("Reading", is_computing=False):
+        changed = open_changed(paths, settings, changes, with_bus=with_bus)
     pictures.check(changed.system, options)
     try:
         with working(f"Simulating {time_text(duration)}"):

@@ -228,6 +228,28 @@ def test_a_shorter_sleep_saves_what_the_loop_no_longer_sleeps():
     assert latency() - latency("uros_task.sleep=1ms") >= 9 * MILLISECOND
 
 
+#: Changes of the board in `docs/ten-tasks.md` -> the worst case in milliseconds that was reported of another description of it, in
+#: which the sizes of the messages and the execution times of tasks are not known.
+REPORTED = {
+    (): 53.9,
+    ("uros_task.sleep=1ms",): 44.14,
+    ("driver.write=blocking",): 48.08,
+    ("uros_task.sleep=1ms", "driver.write=blocking", "serial.baud_rate=921600"): 28.24,
+}
+
+
+def test_a_command_at_460800_baud_is_as_late_as_reported():
+    drive = re.search(
+        r"```yaml title=\"drive.yaml\"\n(.*?)```", (ROOT / "docs" / "ten-tasks.md").read_text("utf-8"), re.DOTALL
+    )[1]
+    for changes, milliseconds in REPORTED.items():
+        found = amuros.analyze(drive, changes=changes)
+        value = found.chains["command-to-motor"].value(amuros.LatencyQuantity.MAX_REDUCED_REACTION_TIME)
+        assert value.value / MILLISECOND == pytest.approx(milliseconds, rel=0.04)
+        assert value.claim is amuros.Claim.BOUND
+        assert (found.summary.schedulable is amuros.Schedulable.YES) == (milliseconds < 50)
+
+
 def test_values_of_the_description_can_be_offered():
     found = amuros.optimize(
         ROVER, vary=[], offers=["uros_task.sleep=1ms", "driver.write=blocking"], goals=["latency"], is_complete=True
