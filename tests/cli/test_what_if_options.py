@@ -38,6 +38,15 @@ def test_the_exit_code_follows_the_changed_system():
     assert "system schedulable yes no worse" in section(found.stdout, "Before and after the change")
 
 
+@pytest.mark.parametrize("change", ["{}.period=1ms", "Executor_Task.{}=1ms", "Executor_Task.period={}", "{}"])
+@pytest.mark.parametrize("subject", ["executor.amxmi", "bodas-test-advanced.yaml"])
+def test_a_mistake_of_thousands_of_characters_is_not_repeated(subject, change):
+    found = amuros("analyze", SAMPLES / subject, "--set", change.format("x" * 5000))
+    assert found.returncode == 2
+    assert "xxx..." in found.stderr
+    assert len(found.stderr) < 1000
+
+
 def test_without_a_change_there_is_no_table():
     assert "Before and after" not in amuros("analyze", MODEL).stdout
     same = amuros("analyze", MODEL, "--set", "Executor_Task.priority=3")
