@@ -35,7 +35,7 @@ from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.simulate import SimulationResult, simulate_campaign, simulate_changed
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time, parse_time, time_text
+from amalthea_uros.units import Duration, Time, parse_time, time_text
 
 
 def _window(text: str) -> tuple[Time, Time]:
@@ -169,8 +169,11 @@ def simulate(
     outputs = checked_outputs(outputs, [*pictures.files, ("--table", table)], streamed)
     if table is not None:
         table_format(table)
-    traced = (trace_window or (0, duration)) if traces else None
-    options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), settings=settings, traced=traced, labels=labels)
+    window = trace_window or (0, duration)
+    traced = (Duration(window[0]), Duration(window[1])) if traces else None
+    options = Options(
+        duration=Duration(duration), seed=seed, mode=SimulationMode(mode), settings=settings, traced=traced, labels=labels
+    )
     if is_campaign:
         with working("Simulating", count_runs(sweeps, runs)) as progress:
             campaign = simulate_campaign(

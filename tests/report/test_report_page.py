@@ -24,7 +24,7 @@ from amalthea_uros.units import MILLISECOND, Duration, Rounding, rounded_time_te
 SAMPLES = ROOT / "samples"
 ADVANCED = SAMPLES / "bodas-test-advanced.yaml"
 #: The worst phase of the message: the page is the same, but for that it is assumed, and made in no time.
-PHASE = Settings(phases={"Message_Factor": 10**9})
+PHASE = Settings(phases={"Message_Factor": "1 ms"})
 EXECUTOR = SAMPLES / "executor.amxmi"
 ALL = every(3, sorted([*SAMPLES.glob("*.yaml"), EXECUTOR]))
 #: Elements of HTML that have no end tag.
