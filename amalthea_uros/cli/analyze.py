@@ -14,7 +14,7 @@ from amalthea_uros._internal.paths import is_description
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.cli.options import FAILING, analysis_options, fail_on_option, metrics_option, paths_argument, set_option
 from amalthea_uros.cli.output import Output, beside_files, output_option, refuse_input, show_findings, show_result, show_text
-from amalthea_uros.cli.parameters import INPUT, OUTPUT, OUTPUT_FILE
+from amalthea_uros.cli.parameters import INPUT, MODEL_OR_DESCRIPTION
 from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
@@ -33,7 +33,7 @@ from amalthea_uros.units import shortened
     "-o",
     "--out",
     "target",
-    type=OUTPUT_FILE,
+    type=MODEL_OR_DESCRIPTION,
     metavar="FILE",
     help="With --set: write the changed model (.amxmi) or app.yaml; only the changed values differ from the given one.",
 )
@@ -152,7 +152,9 @@ def _list_keys(paths: tuple[Path, ...], matching: str) -> None:
 @click.option("--to", "end", required=True, metavar="NAME", help="Process, runnable or label where paths end.")
 @click.option("--add", "name", metavar="CHAIN", help="Add a path to the model as an event chain with this name.")
 @click.option("--path", "number", type=int, default=1, show_default=True, help="Number of the path to add.")
-@click.option("-o", "output", type=OUTPUT, metavar="FILE", help="File to which the model with the event chain is written.")
+@click.option(
+    "-o", "output", type=MODEL_OR_DESCRIPTION, metavar="FILE", help="File to which the model with the event chain is written."
+)
 def chains(model: Path, start: str, end: str, name: str | None, number: int, output: Path | None) -> None:
     """List the paths from one process, runnable or label to another, with their end-to-end latencies.
 

@@ -19,7 +19,7 @@ from amalthea_uros.cli.output import (
     show_text,
     write_outputs,
 )
-from amalthea_uros.cli.parameters import INPUT, MODEL, OUTPUT, OUTPUT_FILE, Offer
+from amalthea_uros.cli.parameters import DESCRIPTION, INPUT, MODEL, OUTPUT, Offer
 from amalthea_uros.cli.patience import working
 from amalthea_uros.diagnostics import Severity, worst
 from amalthea_uros.metamodel.versions import supported_versions, version_key
@@ -68,7 +68,7 @@ def init(target: Path, board: str | None, example: str | None, lists: bool, forc
 
 @click.command("import")
 @click.argument("sources", type=INPUT, nargs=-1, required=True, metavar="SRC...")
-@click.option("-o", "--out", "target", type=OUTPUT_FILE, default="app.yaml", show_default=True, help="The file to write.")
+@click.option("-o", "--out", "target", type=DESCRIPTION, default="app.yaml", show_default=True, help="The file to write.")
 @click.option("--board", type=Offer(_BOARDS), help="Controller; default: none, its clock is to be filled in.")
 @_force_option
 def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: bool) -> None:
