@@ -20,6 +20,7 @@ from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.basics.escape import output_line
 from amalthea_uros.report.wording.closing_line import closing_line
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.analyze import analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings
@@ -136,9 +137,10 @@ def _list_keys(paths: tuple[Path, ...], matching: str) -> None:
     from amalthea_uros.services.keys import keys
 
     values = keys(paths, matching=matching)
-    width = max((len(each.name) for each in values), default=0)
+    width, terminal = max((len(each.name) for each in values), default=0), Terminal(sys.stdout)
+    room = 40 if terminal.width is None else max(10, terminal.width - width - len("  ..."))
     for each in values:
-        click.echo(output_line(f"{each.name:<{width}}  {shortened(each.value)}"))
+        terminal.line(f"{each.name:<{width}}  {shortened(each.value, room)}")
     if not values:
         click.echo(output_line(f"no value has {matching!r} in its name"), err=True)
     elif not matching and not is_description(paths[0]):

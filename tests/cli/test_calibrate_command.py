@@ -43,7 +43,7 @@ def test_the_description_itself_can_be_written(given, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("target", "reason"), zip(NAMES[1:], ("does not end with .yaml", "-o would replace a file that is read"), strict=True)
+    ("target", "reason"), list(zip(NAMES[1:], ("does not end with .yaml", "-o would replace a file that is read"), strict=True))
 )
 def test_what_was_measured_is_not_replaced(given, target, reason, tmp_path):
     before = (tmp_path / target).read_bytes()
