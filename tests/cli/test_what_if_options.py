@@ -51,7 +51,7 @@ def test_the_list_of_values_fits_a_terminal(monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     lines = amuros("analyze", SAMPLES / "drive-and-lift.yaml", "--keys").stdout.splitlines()
     (order,) = [line for line in lines if line.startswith("middleware.task_periods ")]
-    assert order.endswith("[1 ms, 5 ms, 10 ms, 20 m...")
+    assert order.endswith("  [1 ms, 5 ms, 10 ms, 20 ms, ...")
     assert max(map(len, lines)) <= 80
 
 

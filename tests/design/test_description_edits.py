@@ -15,7 +15,6 @@ from amalthea_uros.uros.described import describe_text
 SAMPLES = sorted(path for path in (ROOT / "samples").glob("*.yaml") if "amuros:" in path.read_text())
 ADVANCED = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text()
 DRIVE = (ROOT / "samples" / "drive-and-lift.yaml").read_text()
-INSIDE = (ROOT / "samples" / "rclc-in-executor.yaml").read_text()
 
 
 def edited(text, *changes):
@@ -56,11 +55,6 @@ EDITED = {
     "a deadline of a task": (DRIVE, ["Task_Log.deadline=5ms"], "deadline: 5 ms"),
     "an interrupt": (DRIVE, ["Wheel_Pulse.execution_time=4us"], "execution_time: 4 us"),
     "a runnable": (DRIVE, ["Read_Wheels.execution_time=10us..60us"], "{min: 10 us, max: 60 us}"),
-    "the order of an executor": (
-        INSIDE,
-        ["rclc_executor.order=Control,On_Imu,On_Command"],
-        "order: [Control, On_Imu, On_Command]",
-    ),
     "an exact time": (ADVANCED, ["Message_Factor.offset=0.0005ms"], "offset: 0.0005 ms"),
 }
 

@@ -86,6 +86,9 @@ EDITS = {
     "Imu.execution_time.max=150us": [
         ("execution_time: 100 us, publishes", "execution_time: {min: 100 us, max: 150 us}, publishes")
     ],
+    "uros_task.order=Odometry,On_Cmd,Imu": [
+        ("    execution_time: {base: 100 us", "    order: [Odometry, On_Cmd, Imu]\n    execution_time: {base: 100 us")
+    ],
     "On_Cmd.execution_time=40us..50us": [("{min: 30 us, max: 60 us}", "{min: 40 us, max: 50 us}")],
     "Control.priority=7": [("name: Control,", "name: Control, priority: 7,")],
     "cmd-to-motor.reaction=45ms": [("reaction: 50 ms", "reaction: 45 ms")],
