@@ -18,7 +18,6 @@ from amalthea_uros.cli.parameters import INPUT, MODEL_OR_DESCRIPTION
 from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
-from amalthea_uros.report.basics.escape import output_line
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.analyze import analyze_files, chain_detail
@@ -142,10 +141,10 @@ def _list_keys(paths: tuple[Path, ...], matching: str) -> None:
     for each in values:
         terminal.line(f"{each.name:<{width}}  {shortened(each.value, room)}")
     if not values:
-        click.echo(output_line(f"no value has {matching!r} in its name"), err=True)
+        Terminal(sys.stderr).line(f"no value has {matching!r} in its name")
     elif not matching and not is_description(paths[0]):
         name = values[0].name.rpartition(".")[0]
-        click.echo(f"all attributes of objects are keys, too; for example: --matching {shlex.quote(name)}", err=True)
+        Terminal(sys.stderr).line(f"all attributes of objects are keys, too; for example: --matching {shlex.quote(name)}")
 
 
 @click.command("chains")
@@ -177,4 +176,4 @@ def chains(model: Path, start: str, end: str, name: str | None, number: int, out
     show_text(result, on_error_stream=is_piped)
     if name is not None and output is not None:
         add_path(result, number, name, output)
-        click.echo(output_line(f"path {number} is now the chain {name} in {output}"), err=is_piped)
+        Terminal(sys.stderr if is_piped else sys.stdout).line(f"path {number} is now the chain {name} in {output}")

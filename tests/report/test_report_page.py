@@ -165,6 +165,12 @@ def test_what_would_shorten_the_worst_chain_is_told():
     assert "analysed, one at a time" in shown
 
 
+def test_a_percentage_stays_in_one_line():
+    cells = [cell.text_content() for cell in parsed(page_of(EXECUTOR)).xpath("//td")]
+    assert any("\N{NO-BREAK SPACE}%" in cell for cell in cells)
+    assert [cell for cell in cells if " %" in cell] == []
+
+
 def test_hidden_characters_are_shown():
     content = report(SAMPLES / "bodas-test-simple.yaml", with_simulation=False, title="a\u202eb")
     assert "a\\u202eb" in content.html
