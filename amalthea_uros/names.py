@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.errors import InvalidArgumentError
@@ -24,7 +24,7 @@ def require(kind: str, names: Iterable[str], known: Iterable[str]) -> None:
             raise InvalidArgumentError(f"unknown {kind} {name!r}; {_advice(kind, name, existing)}")
 
 
-def listed(names: list[str]) -> str:
+def listed(names: Sequence[str]) -> str:
     """Names as a list, which is cut if it is long."""
     rest = len(names) - _MOST_NAMES
     return ", ".join(names[:_MOST_NAMES]) + (f" and {rest} more" if rest > 0 else "")

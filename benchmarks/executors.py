@@ -15,6 +15,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
+from amalthea_uros.units import Duration
 from amalthea_uros.uros.described import describe_text
 
 _HEAD = """
@@ -65,7 +66,9 @@ def main() -> None:
         ways.append(("machine code", Compiled(), 500))
     for name, way, seconds in ways:
         with way:
-            time, found = timed(partial(simulate_system, system, Options(duration=seconds * SECOND)), arguments.repeat)
+            time, found = timed(
+                partial(simulate_system, system, Options(duration=Duration(seconds * SECOND))), arguments.repeat
+            )
         calls, every = events(found)
         print(
             f"{name}: {calls / time:,.0f} calls/s, {every / time:,.0f} events/s, {seconds / time:,.1f} s of model time per second"

@@ -16,7 +16,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 from amalthea_uros.uros.described import describe_text
 
 CHAINS, EXECUTORS, CORES, LOAD = 20, 8, 4, 0.3
@@ -71,7 +71,7 @@ def main() -> None:
         print(
             f"analysis of {callbacks} callbacks, {EXECUTORS} executors, {CORES} cores, {CHAINS} chains ({known} bounds): {took:.2f} s"
         )
-        took = least_time(partial(simulate_system, system, Options(duration=SECOND)), 1) / 1000
+        took = least_time(partial(simulate_system, system, Options(duration=Duration(SECOND))), 1) / 1000
         print(f"simulation of 1 s of {callbacks} callbacks: {took:.2f} s")
 
 

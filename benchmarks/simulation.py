@@ -30,7 +30,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import parse_frequency
+from amalthea_uros.units import Duration, parse_frequency
 
 ROOT = Path(__file__).parents[1]
 MILLISECOND = 10**9
@@ -177,13 +177,13 @@ def main() -> None:
         print(f"  simso {count / (perf_counter() - start):>12,.0f} jobs/s")
     for name, way, seconds in ways:
         with way:
-            options = Options(duration=seconds * SECOND)
+            options = Options(duration=Duration(seconds * SECOND))
             time, found = timed(partial(simulate_system, system, options), arguments.repeat)
         print(f"  {name}: {jobs(found) / time:,.0f} jobs/s, {scheduling_events(found) / time:,.0f} events/s")
     thesis = open_system((ROOT / "samples" / "bodas-test-advanced.yaml",)).system
     for name, way, _ in ways:
         with way:
-            time, found = timed(lambda: simulate_system(thesis, Options(duration=300 * SECOND)), arguments.repeat)
+            time, found = timed(lambda: simulate_system(thesis, Options(duration=Duration(300 * SECOND))), arguments.repeat)
         print(f"bodas-test-advanced, 5 min, {name}: {time:.2f} s, {jobs(found):,} jobs")
     if arguments.model is not None:
         opened = open_system((arguments.model,)).system
@@ -191,9 +191,12 @@ def main() -> None:
         settings = Settings(frequencies=dict.fromkeys(opened.cores, frequency))
         for name, way, _ in ways:
             with way:
-                short, _ = timed(lambda: simulate_system(opened, Options(duration=SECOND, settings=settings)), arguments.repeat)
+                short, _ = timed(
+                    lambda: simulate_system(opened, Options(duration=Duration(SECOND), settings=settings)), arguments.repeat
+                )
                 long, found = timed(
-                    lambda: simulate_system(opened, Options(duration=11 * SECOND, settings=settings)), arguments.repeat
+                    lambda: simulate_system(opened, Options(duration=Duration(11 * SECOND), settings=settings)),
+                    arguments.repeat,
                 )
             print(
                 f"{arguments.model.name}, {name}: {(long - short) / 10:.3f} s per second of model time, {short:.2f} s at first"
@@ -209,7 +212,7 @@ def runs(system: System, repeat: int) -> None:
     from amalthea_uros.design.campaign.simulations import SimulationJob
 
     job, planned = (
-        SimulationJob(SystemOrigin(Configuration(system, Settings())), Options(duration=SECOND // 10)),
+        SimulationJob(SystemOrigin(Configuration(system, Settings())), Options(duration=Duration(SECOND // 10))),
         plan_runs([], 1000, 1),
     )
     cores = os.cpu_count() or 1

@@ -13,6 +13,7 @@ from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.units import Duration
 
 
 class Least:
@@ -36,7 +37,7 @@ class Least:
 
 def calls(system, until):
     """The calls of each handle in a run in which everything takes its least time: the response times in picoseconds."""
-    options = Options(duration=until, mode=SimulationMode.BEST)
+    options = Options(duration=Duration(until), mode=SimulationMode.BEST)
     context = TimingContext.of_scheduling(with_first_arrivals(with_steps(system), {}), options.settings)
     program, rows = build_program(context, options), []
     assert program.left_out == {}

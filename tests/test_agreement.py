@@ -11,6 +11,7 @@ from amalthea_uros.errors import AmurosError
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options
+from amalthea_uros.units import Duration
 
 #: Long enough for some jobs of usual periods.
 DURATION = 100 * 10**9
@@ -37,7 +38,7 @@ def disagreements(path: Path) -> list[str]:
     try:
         analysis = analyze_files(path).analysis
         for mode in (Mode.WORST, Mode.BEST, Mode.SAMPLED):
-            simulation = simulate_files(path, Options(duration=DURATION, mode=mode)).simulation
+            simulation = simulate_files(path, Options(duration=Duration(DURATION), mode=mode)).simulation
             found += [f"{mode}: {text}" for text in contradictions(analysis, simulation)]
     except AmurosError:
         return found

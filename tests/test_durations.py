@@ -1,5 +1,6 @@
 """Times of callers: with a unit, or refused."""
 
+import dataclasses
 from datetime import timedelta
 from fractions import Fraction
 
@@ -43,5 +44,18 @@ def test_options_and_settings_take_quantities_with_their_units():
     assert (settings.frequencies, settings.phases) == ({"Core_0": 300 * 10**6}, {"cmd_vel": 2 * 10**9})
     with pytest.raises(amuros.InvalidArgumentError, match=r"the number 1\.5 has no unit; write a text such as '1\.5 ms'"):
         amuros.Options(duration=1.5)
+    with pytest.raises(amuros.InvalidArgumentError, match=r"the duration: the number 1000000000000 has no unit"):
+        amuros.Options(duration=10**12)
+    with pytest.raises(amuros.InvalidArgumentError, match=r"the end of the trace: the number 5 has no unit"):
+        amuros.Options(duration="1 s", traced=(0, 5))
+    with pytest.raises(amuros.InvalidArgumentError, match=r"cmd_vel: the number 5 has no unit"):
+        amuros.Settings(phases={"cmd_vel": 5})
+    with pytest.raises(
+        amuros.InvalidArgumentError, match=r"Core_0: the number 300 has no unit; write a text such as '300 MHz'"
+    ):
+        amuros.Settings(frequencies={"Core_0": 300})
+    # What is kept is known as stated when an object is made of another one.
+    assert dataclasses.replace(options, seed=2) == amuros.Options(duration="10 s", seed=2, traced=("0 s", "1 ms"))
+    assert dataclasses.replace(settings, growth=Fraction(2)).phases == settings.phases
     with pytest.raises(amuros.InvalidArgumentError, match="Core_0: '300' has no unit"):
         amuros.Settings(frequencies={"Core_0": "300"})

@@ -10,6 +10,7 @@ from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 FOLDER = SHARED / "vectors" / "verdicts"
 #: Their only stimulus has no minimum distance: the analysis says that this is unknown, although no limit is stated.
@@ -22,7 +23,7 @@ def test_analysis_and_simulation_judge_the_same_limits(path):
     if path.stem in WITHOUT_LIMIT:
         return
     analysis = analyze_files(path).analysis
-    simulation = simulate_files(path, Options(duration=MS)).simulation
+    simulation = simulate_files(path, Options(duration=Duration(MS))).simulation
     judged = [*(each for each in analysis.processes if each.verdict is not None), *analysis.requirements]
     assert sorted((each.name, each.quantity) for each in simulation.judged) == sorted(
         (each.name, each.quantity) for each in judged

@@ -14,6 +14,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 ENDS = (
     ProcessEvent(name="begin", process="writer", change=ProcessChange.START),
@@ -38,7 +39,7 @@ def values(built):
 
 
 def first_to_first(built):
-    (observed,) = simulate_system(built, Options(duration=10 * MS)).chains
+    (observed,) = simulate_system(built, Options(duration=Duration(10 * MS))).chains
     return observed, observed.quantities[ChainQuantity.FIRST_TO_FIRST]
 
 

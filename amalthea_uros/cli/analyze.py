@@ -14,12 +14,12 @@ from amalthea_uros._internal.paths import is_description
 from amalthea_uros.analyze.results.chains import EXPLAINED, LatencyQuantity
 from amalthea_uros.cli.options import FAILING, analysis_options, fail_on_option, metrics_option, paths_argument, set_option
 from amalthea_uros.cli.output import Output, beside_files, output_option, refuse_input, show_findings, show_result, show_text
-from amalthea_uros.cli.parameters import INPUT, OUTPUT, OUTPUT_FILE
+from amalthea_uros.cli.parameters import INPUT, MODEL_OR_DESCRIPTION
 from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import EXAMPLE, Change
 from amalthea_uros.judge.summary import Schedulable
-from amalthea_uros.report.basics.escape import output_line
 from amalthea_uros.report.wording.closing_line import closing_line
+from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.analyze import analyze_files, chain_detail
 from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings
@@ -33,7 +33,7 @@ from amalthea_uros.units import shortened
     "-o",
     "--out",
     "target",
-    type=OUTPUT_FILE,
+    type=MODEL_OR_DESCRIPTION,
     metavar="FILE",
     help="With --set: write the changed model (.amxmi) or app.yaml; only the changed values differ from the given one.",
 )
@@ -136,14 +136,15 @@ def _list_keys(paths: tuple[Path, ...], matching: str) -> None:
     from amalthea_uros.services.keys import keys
 
     values = keys(paths, matching=matching)
-    width = max((len(each.name) for each in values), default=0)
+    width, terminal = max((len(each.name) for each in values), default=0), Terminal(sys.stdout)
+    room = 40 if terminal.width is None else max(10, terminal.width - width - len("  ..."))
     for each in values:
-        click.echo(output_line(f"{each.name:<{width}}  {shortened(each.value)}"))
+        terminal.line(f"{each.name:<{width}}  {shortened(each.value, room)}")
     if not values:
-        click.echo(output_line(f"no value has {matching!r} in its name"), err=True)
+        Terminal(sys.stderr).line(f"no value has {matching!r} in its name")
     elif not matching and not is_description(paths[0]):
         name = values[0].name.rpartition(".")[0]
-        click.echo(f"all attributes of objects are keys, too; for example: --matching {shlex.quote(name)}", err=True)
+        Terminal(sys.stderr).line(f"all attributes of objects are keys, too; for example: --matching {shlex.quote(name)}")
 
 
 @click.command("chains")
@@ -152,7 +153,9 @@ def _list_keys(paths: tuple[Path, ...], matching: str) -> None:
 @click.option("--to", "end", required=True, metavar="NAME", help="Process, runnable or label where paths end.")
 @click.option("--add", "name", metavar="CHAIN", help="Add a path to the model as an event chain with this name.")
 @click.option("--path", "number", type=int, default=1, show_default=True, help="Number of the path to add.")
-@click.option("-o", "output", type=OUTPUT, metavar="FILE", help="File to which the model with the event chain is written.")
+@click.option(
+    "-o", "output", type=MODEL_OR_DESCRIPTION, metavar="FILE", help="File to which the model with the event chain is written."
+)
 def chains(model: Path, start: str, end: str, name: str | None, number: int, output: Path | None) -> None:
     """List the paths from one process, runnable or label to another, with their end-to-end latencies.
 
@@ -173,4 +176,4 @@ def chains(model: Path, start: str, end: str, name: str | None, number: int, out
     show_text(result, on_error_stream=is_piped)
     if name is not None and output is not None:
         add_path(result, number, name, output)
-        click.echo(output_line(f"path {number} is now the chain {name} in {output}"), err=is_piped)
+        Terminal(sys.stderr if is_piped else sys.stdout).line(f"path {number} is now the chain {name} in {output}")

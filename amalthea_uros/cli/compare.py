@@ -25,7 +25,7 @@ from amalthea_uros.cli.output import (
     show_text,
     write_outputs,
 )
-from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE, PICTURE, Parsed, assignment
+from amalthea_uros.cli.parameters import DESCRIPTION, INPUT, PICTURE, Parsed, assignment
 from amalthea_uros.cli.patience import working
 from amalthea_uros.compare.calibration.calibration import calibrate_file
 from amalthea_uros.compare.calibration.options import FIT_FORM, AgentFit, CalibrationOptions, Form, parse_fit
@@ -156,7 +156,7 @@ def compare(
     "-o",
     "--out",
     "target",
-    type=OUTPUT_FILE,
+    type=DESCRIPTION,
     metavar="FILE",
     help="File to write, which may be APP_YAML; default: show a diff.",
 )
@@ -216,7 +216,8 @@ def calibrate(
         refuse_input(target, "-o")
     is_diff = target is None or is_dry_run
     outputs = _beside_diff(outputs) if is_diff else beside_files(outputs, [("-o", target)])
-    found = calibrate_file(description, [measure_file(trace, reading) for trace in traces], options)
+    with working("Calibrating", is_computing=False):
+        found = calibrate_file(description, [measure_file(trace, reading) for trace in traces], options)
     show_findings(found.findings)
     if is_diff:
         show_text(FilesDiff((FileChange(found.path, found.before, found.text),), "calibrated"))

@@ -179,7 +179,9 @@ def main() -> None:
         terminal.line(f"{findings_text(error.findings)}; no result is written")
         sys.exit(1)
     except InvalidArgumentError as error:
-        click.UsageError(visible(str(error))).show()
+        from amalthea_uros.report.writers.terminal import Terminal
+
+        Terminal(sys.stderr).line(f"Error: {error}")
         sys.exit(2)
     except OSError as error:
         sys.exit(failed(error))

@@ -12,6 +12,7 @@ import click
 from amalthea_uros._internal.files import STANDARD_INPUT
 from amalthea_uros.cli.output import Output, beside_files, output_option, show_findings, show_result, show_text
 from amalthea_uros.cli.parameters import INPUT, OUTPUT
+from amalthea_uros.cli.patience import working
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.metamodel.versions import newest_version
 from amalthea_uros.services.files import FilesDiff
@@ -54,7 +55,8 @@ def diff(old: Path, new: Path, with_impact: bool, outputs: tuple[Output, ...]) -
     """
     from amalthea_uros.services import diff as service
 
-    result = service.diff(old, new, with_impact=with_impact)
+    with working("Comparing", is_computing=with_impact):
+        result = service.diff(old, new, with_impact=with_impact)
     show_result(result, outputs)
     sys.exit(1 if result.changes or result.described else 0)
 
@@ -79,10 +81,11 @@ def fmt(paths: tuple[Path, ...], check: bool, show_diff: bool) -> None:
 
 
 def _with_progress(items: Sequence[T]) -> Iterator[T]:
-    """The items, with a bar on a terminal if there are several."""
-    is_hidden = len(items) < 2 or not sys.stderr.isatty()
-    with click.progressbar(items, label="Migrating", file=sys.stderr, hidden=is_hidden) as bar:
-        yield from bar
+    """The items, with the number of those that are finished on a terminal."""
+    with working("Migrating", len(items), is_computing=False) as progress:
+        for item in items:
+            yield item
+            progress.step()
 
 
 @click.command("migrate")

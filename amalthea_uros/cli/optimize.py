@@ -11,8 +11,9 @@ import click
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.key_completion import OfKey
 from amalthea_uros.cli.options import paths_argument, seed_option, settings_options, workers_options
-from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_line, show_result
-from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, POSITIVE, Parsed
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_line, show_result
+from amalthea_uros.cli.parameters import MODEL_OR_DESCRIPTION, PICTURE, POSITIVE, Parsed
+from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, parse_sweep
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary
 from amalthea_uros.design.optimize.goals import GOALS
@@ -92,7 +93,9 @@ def _vary(text: str) -> tuple[Vary, ...]:
     "--proposals", type=click.IntRange(min=1), default=MOST_PROPOSALS, show_default=True, help="Show at most so many proposals."
 )
 @click.option("--pareto", type=PICTURE, metavar="FILE", help="Judge all designs, and draw what each goal costs, as SVG.")
-@click.option("-o", "--out", "target", type=OUTPUT_FILE, metavar="FILE", help="Write a proposal, as app.yaml or .amxmi.")
+@click.option(
+    "-o", "--out", "target", type=MODEL_OR_DESCRIPTION, metavar="FILE", help="Write a proposal, as app.yaml or .amxmi."
+)
 @click.option(
     "--proposal", "number", type=click.IntRange(min=1), default=1, show_default=True, help="With -o: the proposal to write."
 )
@@ -115,11 +118,11 @@ def optimize(
     """
     outputs = checked_outputs(outputs, [("-o", target), ("--pareto", pareto)])
     wishes["proposals"] = max(wishes["proposals"], number if target is not None else 1)
-    with progress(wishes["designs"], "Judging designs") as bar:
+    with working("Judging designs", wishes["designs"]) as progress:
         result = service.optimize(
             paths,
             is_complete=is_complete or pareto is not None,
-            progress=lambda tried: bar.update(tried - bar.pos),
+            progress=progress.reach,
             **wishes,
         )
     if pareto is not None:

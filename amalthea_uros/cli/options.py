@@ -17,7 +17,7 @@ from amalthea_uros.design.changes.change import EXAMPLE, FORM, SWEEP_EXAMPLE, pa
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.timing.basics.settings import MemoryModel, Settings
-from amalthea_uros.units import Frequency, Time, parse_duration, parse_frequency, parse_time
+from amalthea_uros.units import Duration, Frequency, Time, parse_duration, parse_frequency, parse_time
 
 #: Gives the function of a command an option; it receives the value as a parameter.
 Decorator: TypeAlias = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -204,7 +204,7 @@ def settings_options(function: Callable[..., Any]) -> Callable[..., Any]:
             Fraction(str(scale)),
             memory=MemoryModel(memory),
             communication=_COMMUNICATION.get(communication),
-            phases=dict(phases),
+            phases={callback: Duration(time) for callback, time in phases},
             quantile=None if quantile is None else Fraction(str(quantile)),
         )
         function(settings=settings, **others)

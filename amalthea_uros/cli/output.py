@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import AbstractContextManager
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -246,11 +245,6 @@ def _write_file(path: Path, name: str, result: object) -> None:
 def show_text(result: object, on_error_stream: bool = False) -> None:
     """Show a result to a person."""
     formats.write(formats.TEXT, result, sys.stderr if on_error_stream else sys.stdout)
-
-
-def progress(length: int, label: str) -> AbstractContextManager[Any]:
-    """A progress bar of click, which is only shown on a terminal."""
-    return click.progressbar(length=length, label=label, file=sys.stderr, hidden=not sys.stderr.isatty())
 
 
 def show_line(text: str) -> None:

@@ -35,11 +35,11 @@ OUTPUT_FILE = FileType(STANDARD_OUTPUT, dir_okay=False)
 
 
 class SuffixedFile(FileType):
-    """A file to write, whose suffix has to be that of its format; `-` is standard output."""
+    """A file to write, whose suffix has to be one of its format; `-` is standard output."""
 
-    def __init__(self, suffix: str, reason: str) -> None:
+    def __init__(self, reason: str, *suffixes: str) -> None:
         super().__init__(STANDARD_OUTPUT, dir_okay=False)
-        self.suffix = suffix
+        self.suffixes = suffixes
         self.reason = reason
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
@@ -51,13 +51,15 @@ class SuffixedFile(FileType):
 
     def checked(self, path: Path) -> Path:
         """The path; ValueError for another suffix."""
-        if path != STANDARD_OUTPUT and path.suffix.lower() != self.suffix and not is_stream(path):
-            raise ValueError(f"'{path}' does not end with {self.suffix}; {self.reason}")
+        if path != STANDARD_OUTPUT and path.suffix.lower() not in self.suffixes and not is_stream(path):
+            raise ValueError(f"'{path}' does not end with {' or '.join(self.suffixes)}; {self.reason}")
         return path
 
 
-PICTURE = SuffixedFile(".svg", "pictures are written as SVG")
-MODEL = SuffixedFile(".amxmi", "models are written as AMALTHEA XML")
+PICTURE = SuffixedFile("pictures are written as SVG", ".svg")
+MODEL = SuffixedFile("models are written as AMALTHEA XML", ".amxmi")
+DESCRIPTION = SuffixedFile("descriptions are written as YAML", ".yaml", ".yml")
+MODEL_OR_DESCRIPTION = SuffixedFile("it is written as an AMALTHEA model or an app.yaml", ".amxmi", ".yaml", ".yml")
 
 
 def output_path(text: str) -> Path:

@@ -23,7 +23,7 @@ from amalthea_uros.cli.options import (
     table_option,
     workers_options,
 )
-from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_result
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_result
 from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, Parsed, assignment, picture_path
 from amalthea_uros.cli.patience import working
 from amalthea_uros.cli.pictures import Pictures
@@ -35,7 +35,7 @@ from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.simulate import SimulationResult, simulate_campaign, simulate_changed
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import Time, parse_time, time_text
+from amalthea_uros.units import Duration, Time, parse_time, time_text
 
 
 def _window(text: str) -> tuple[Time, Time]:
@@ -169,10 +169,13 @@ def simulate(
     outputs = checked_outputs(outputs, [*pictures.files, ("--table", table)], streamed)
     if table is not None:
         table_format(table)
-    traced = (trace_window or (0, duration)) if traces else None
-    options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), settings=settings, traced=traced, labels=labels)
+    window = trace_window or (0, duration)
+    traced = (Duration(window[0]), Duration(window[1])) if traces else None
+    options = Options(
+        duration=Duration(duration), seed=seed, mode=SimulationMode(mode), settings=settings, traced=traced, labels=labels
+    )
     if is_campaign:
-        with progress(count_runs(sweeps, runs), "Simulating") as bar:
+        with working("Simulating", count_runs(sweeps, runs)) as progress:
             campaign = simulate_campaign(
                 paths,
                 options,
@@ -180,14 +183,15 @@ def simulate(
                 sweeps=sweeps,
                 repetitions=runs,
                 with_bus=with_bus,
-                on_outcome=lambda _outcome: bar.update(1),
+                on_outcome=progress.step,
                 **where,
             )
         sys.exit(_show_campaign(campaign, table, outputs))
     if trace_window is not None and trace_window[0] >= duration:
         start, end = time_text(trace_window[0]), time_text(duration)
         raise click.UsageError(f"the window of the trace starts at {start}, but the run ends at {end}")
-    changed = open_changed(paths, settings, changes, with_bus=with_bus)
+    with working("Reading", is_computing=False):
+        changed = open_changed(paths, settings, changes, with_bus=with_bus)
     pictures.check(changed.system, options)
     try:
         with working(f"Simulating {time_text(duration)}"):

@@ -21,8 +21,9 @@ from amalthea_uros.cli.options import (
     table_option,
     workers_options,
 )
-from amalthea_uros.cli.output import Output, checked_outputs, output_option, progress, show_result
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_result
 from amalthea_uros.cli.parameters import assignment, picture_path
+from amalthea_uros.cli.patience import working
 from amalthea_uros.design.campaign.sweeps import SweepResult, plan_sweep
 from amalthea_uros.design.campaign.tables import table_format, write_table
 from amalthea_uros.design.changes.change import Change, Sweep
@@ -82,9 +83,10 @@ def sweep(
     outputs = checked_outputs(outputs, [*(("--picture", path) for _, path in pictures), ("--table", table)])
     if table is not None:
         table_format(table)
-    plan, changed = plan_sweep(sweeps, sample, seed), open_changed(paths, settings, changes, with_bus=with_bus)
-    with progress(len(plan.runs), "Analyzing") as bar:
-        result = sweep_changed(changed, plan, on_outcome=lambda _outcome: bar.update(1), **execution)
+    plan = plan_sweep(sweeps, sample, seed)
+    with working("Analyzing", len(plan.runs)) as progress:
+        changed = open_changed(paths, settings, changes, with_bus=with_bus)
+        result = sweep_changed(changed, plan, on_outcome=progress.step, **execution)
     result = replace(result, shown=quantities)
     for quantity in (*quantities, *(name for name, _ in pictures)):
         result.column(quantity)

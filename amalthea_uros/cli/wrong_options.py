@@ -22,6 +22,7 @@ _INSTEAD = {
 #: Of one command, where another one has the option, or the same under another name.
 _OF_OTHERS = {
     ("analyze", "--duration"): "only amuros simulate and report have a duration; an analysis covers all times",
+    ("init", "-o"): "write the file alone: amuros init --board BOARD FILE",
     ("analyze", "--list"): "write --keys, or --matching TEXT, for the values that --set can change",
     (
         "optimize",

@@ -26,7 +26,7 @@ from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.trace.sinks import TraceSink
 from amalthea_uros.trace.table import Entity, EventTable
-from amalthea_uros.units import SECOND, Time
+from amalthea_uros.units import SECOND, Duration, Time
 
 #: So many events are measured, which takes about a second; more values would hardly change a distribution.
 _MOST_EVENTS = 400_000
@@ -88,7 +88,7 @@ def _series(kind: MeasuredKind, name: str, quantity: str, values: Numbers) -> Se
 
 def simulate_measured(system: System, settings: Settings, duration: Time, seed: int) -> tuple[Run, ...]:
     """A run of a duration, and further ones in other phases if some are unknown."""
-    first = _run(system, Options(duration=duration, seed=seed, settings=settings), _MOST_EVENTS)
+    first = _run(system, Options(duration=Duration(duration), seed=seed, settings=settings), _MOST_EVENTS)
     variants = list(_phases(system, settings, seed))
     if not variants:
         return (first,)
@@ -96,7 +96,7 @@ def simulate_measured(system: System, settings: Settings, duration: Time, seed: 
     events = _MOST_EVENTS // len(variants)
     return (
         first,
-        *(_run(each, Options(duration=shorter, seed=other, settings=settings), events) for each, other in variants),
+        *(_run(each, Options(duration=Duration(shorter), seed=other, settings=settings), events) for each, other in variants),
     )
 
 

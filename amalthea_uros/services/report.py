@@ -27,7 +27,7 @@ from amalthea_uros.services.waiting_messages import findings_of, with_analysed_s
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.activation.load import activation_rates
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import MILLISECOND, SECOND, Time
+from amalthea_uros.units import MILLISECOND, SECOND, Duration, Time
 
 if TYPE_CHECKING:
     from amalthea_uros.findings.presentation import Presentation
@@ -122,7 +122,7 @@ def compile_report(
     model = _model_of(opened)
     simulation = None
     if with_simulation:
-        options = Options(duration=duration or default_duration(analysis), seed=seed, settings=changed.settings)
+        options = Options(duration=Duration(duration or default_duration(analysis)), seed=seed, settings=changed.settings)
         simulation = _simulated(system, options, is_kept=duration is None)
     # Those of reading and building a model are among the findings of the check.
     told = () if model is None else model.findings

@@ -24,7 +24,7 @@ from amalthea_uros.services.changed import ChangedSystem, open_changed
 from amalthea_uros.services.subject import Subject
 from amalthea_uros.simulate.options import ALL_LABELS, Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
+from amalthea_uros.timing.basics.stated_times import TimeLike
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.impact import Impact
@@ -140,12 +140,12 @@ def simulate(
     from amalthea_uros.trace.sinks import EventRecorder
 
     changed = open_changed(subject, settings, changes)
-    time, recorder = stated_time("the duration", duration), EventRecorder()
+    recorder = EventRecorder()
     sinks: list[OpenSink] = [*_writers(trace_paths), *([recorder] if trace else [])]
-    traced = (0, time) if sinks else None
+    traced = (0, duration) if sinks else None
     if mode not in tuple(SimulationMode):
         raise InvalidArgumentError(f"unknown mode {mode!r}; expected one of {', '.join(SimulationMode)}")
-    options = Options(duration=time, seed=seed, mode=SimulationMode(mode), traced=traced, labels=tuple(labels))
+    options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), traced=traced, labels=tuple(labels))
     result = _simulated(changed, options, sinks)
     origin = RunOrigin(result.system, result.options)
     return replace(result.simulation, findings=result.findings, trace=recorder.table if trace else None, origin=origin)

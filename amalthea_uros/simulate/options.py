@@ -39,8 +39,8 @@ class Options:
 
     Attributes
     ----------
-    duration : model time, from 0; at its end the run stops. A text such as "10 s" or a `Duration`; a whole number is in
-        picoseconds, as in results
+    duration : model time, from 0; at its end the run stops. A text such as "10 s" or a `Duration`, which a time of a result
+        becomes by `Duration(time)`
     seed : of all random values; runs with the same seed are equal on every machine
     settings : as of an analysis
     traced : the part of the model time of which events are recorded; None: nothing is

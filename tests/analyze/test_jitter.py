@@ -14,6 +14,7 @@ from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 from amalthea_uros.uros.described import describe_text
 
 ADVANCED = (ROOT / "samples" / "bodas-test-advanced.yaml").read_text()
@@ -130,7 +131,7 @@ def test_no_run_has_a_greater_jitter_than_the_bound(tasks, limit):
     described = system(of_random_tasks(tasks, limit))
     analysis = analyze_system(described)
     for mode in (Mode.SAMPLED, Mode.WORST, Mode.BEST):
-        run = simulate_system(described, Options(duration=60 * MS, mode=mode, seed=len(tasks)))
+        run = simulate_system(described, Options(duration=Duration(60 * MS), mode=mode, seed=len(tasks)))
         assert list(contradictions(analysis, run)) == []
         for bound, observed in zip(analysis.requirements, run.requirements, strict=True):
             assert bound.upper is None or observed.value is None or observed.value <= bound.upper, bound.name

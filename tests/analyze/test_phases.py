@@ -75,7 +75,7 @@ class TestTheSample:
     @pytest.mark.parametrize("phase", range(0, 40, 3) if IS_THOROUGH else (0, 3, 20, 39))
     def test_a_stated_phase(self, phase):
         stated = analyze(sample(phase=("rate: 50 Hz", f"rate: 50 Hz, phase: {phase} ms")))
-        for_once = analyze_system(describe(SAMPLE).system, Settings(phases={"Message_Factor": phase * MS}))
+        for_once = analyze_system(describe(SAMPLE).system, Settings(phases={"Message_Factor": f"{phase} ms"}))
         assert stated.processes == for_once.processes
         assert stated.assumptions == for_once.assumptions
         assert f"first in job {phase + 1}, at {time_text(phase * MS)}, as stated" in stated.assumptions[-1]

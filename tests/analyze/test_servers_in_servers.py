@@ -18,6 +18,7 @@ from amalthea_uros.perf.stimuli import Periodic, Stimuli
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 POLICIES = st.sampled_from([Policy.DEFERRABLE_SERVER, Policy.POLLING_SERVER, Policy.SPORADIC_SERVER])
 PRIORITIES = st.integers(1, 9)
@@ -54,7 +55,7 @@ def systems(draw):
 @examples(40)
 @given(systems())
 def test_no_simulated_response_exceeds_its_bound(built):
-    simulation = simulate_system(built, Options(duration=2000 * US, mode=Mode.WORST))
+    simulation = simulate_system(built, Options(duration=Duration(2000 * US), mode=Mode.WORST))
     assert list(contradictions(analyze_system(built), simulation)) == []
 
 

@@ -22,6 +22,7 @@ from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 
 def built(rows, cores=2, **parts):
@@ -125,7 +126,7 @@ def test_no_job_is_later_than_its_bound(rows, cores, seed):
     for shift in product((0, 1), repeat=2):
         moved = [(*row[:3], (row[3] + shift[number % 2] * number) % row[0]) for number, row in enumerate(rows)]
         runs.append(play(moved, cores, 400, Random(seed)))
-    options = Options(duration=300 * US, seed=seed)
+    options = Options(duration=Duration(300 * US), seed=seed)
     recording = record(model, options)
     assert list(contradictions(analysis, simulate_system(model, options))) == []
     simulated = [[end - begin for begin, _, end in recording.jobs_of(f"T{number}")] for number in range(len(rows))]

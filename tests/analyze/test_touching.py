@@ -307,7 +307,7 @@ class TestChains:
 class TestSimulation:
     """What depends on something that is not simulated is not observed, whatever is seen of it."""
 
-    OPTIONS = Options(duration=1000 * US)
+    OPTIONS = Options(duration=Duration(1000 * US))
 
     def verdicts(self, *processes, **parts):
         simulation = simulate_system(built(*processes, **parts), self.OPTIONS)

@@ -17,6 +17,7 @@ from amalthea_uros.perf.software import OsEvent
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 PASSIVE, ACTIVE = Waiting.PASSIVE, Waiting.ACTIVE
 
@@ -204,7 +205,7 @@ def test_no_job_of_any_run_is_beyond_its_bounds(drawn):
         if found[task.name].response is not None and found[task.name].response.worst is not None
     }
     players = [Player(tasks, Random(number)).play(600) for number in range(seed, seed + 4)]
-    options = Options(duration=600 * US, seed=seed)
+    options = Options(duration=Duration(600 * US), seed=seed)
     recording = record(model, options)
     assert list(contradictions(found, simulate_system(model, options))) == []
     runs = [player.found for player in players]

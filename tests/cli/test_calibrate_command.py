@@ -42,12 +42,14 @@ def test_the_description_itself_can_be_written(given, tmp_path):
     assert "written" not in again.stdout
 
 
-@pytest.mark.parametrize("target", NAMES[1:])
-def test_what_was_measured_is_not_replaced(given, target, tmp_path):
+@pytest.mark.parametrize(
+    ("target", "reason"), list(zip(NAMES[1:], ("does not end with .yaml", "-o would replace a file that is read"), strict=True))
+)
+def test_what_was_measured_is_not_replaced(given, target, reason, tmp_path):
     before = (tmp_path / target).read_bytes()
     run = amuros(*given, "-o", target)
     assert run.returncode == 2
-    assert "-o would replace a file that is read" in run.stderr
+    assert reason in run.stderr
     assert (tmp_path / target).read_bytes() == before
 
 

@@ -2,8 +2,6 @@
 
 import json
 import re
-import sys
-from io import StringIO
 
 import pytest
 from click.testing import CliRunner
@@ -151,21 +149,6 @@ def test_wrong_use(tmp_path):
     assert missing.exit_code == 2
     assert "XMI001 error: file not found" in missing.stderr
     assert [file.name for file in tmp_path.iterdir()] == ["a.amxmi"]
-
-
-@pytest.mark.parametrize("number", [1, 3])
-def test_a_bar_shows_the_progress_on_a_terminal(number, tmp_path, monkeypatch):
-    class Screen(StringIO):
-        def isatty(self):
-            return True
-
-    for place in range(number):
-        model(tmp_path / f"{place}.amxmi")
-    screen = Screen()
-    monkeypatch.setattr(sys, "stderr", screen)
-    with pytest.raises(SystemExit):
-        command([str(tmp_path), "-o", str(tmp_path / "new"), "--output", f"json={tmp_path / 'r.json'}"], standalone_mode=True)
-    assert ("Migrating" in screen.getvalue()) is (number > 1)
 
 
 def test_the_other_commands_say_that_a_model_was_migrated(tmp_path):

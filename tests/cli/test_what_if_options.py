@@ -38,6 +38,23 @@ def test_the_exit_code_follows_the_changed_system():
     assert "system schedulable yes no worse" in section(found.stdout, "Before and after the change")
 
 
+@pytest.mark.parametrize("change", ["{}.period=1ms", "Executor_Task.{}=1ms", "Executor_Task.period={}", "{}"])
+@pytest.mark.parametrize("subject", ["executor.amxmi", "bodas-test-advanced.yaml"])
+def test_a_mistake_of_thousands_of_characters_is_not_repeated(subject, change):
+    found = amuros("analyze", SAMPLES / subject, "--set", change.format("x" * 5000))
+    assert found.returncode == 2
+    assert "xxx..." in found.stderr
+    assert len(found.stderr) < 1000
+
+
+def test_the_list_of_values_fits_a_terminal(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = amuros("analyze", SAMPLES / "drive-and-lift.yaml", "--keys").stdout.splitlines()
+    (order,) = [line for line in lines if line.startswith("middleware.task_periods ")]
+    assert order.endswith("  [1 ms, 5 ms, 10 ms, 20 ms, ...")
+    assert max(map(len, lines)) <= 80
+
+
 def test_without_a_change_there_is_no_table():
     assert "Before and after" not in amuros("analyze", MODEL).stdout
     same = amuros("analyze", MODEL, "--set", "Executor_Task.priority=3")

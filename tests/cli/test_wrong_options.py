@@ -21,6 +21,19 @@ APP = ROOT / "samples" / "bodas-test-simple.yaml"
         ("simulate", ["--gantt", "x.png"], "'x.png' does not end with .svg; pictures are written as SVG"),
         ("simulate", ["--histogram", "Control_Function=x.pdf"], "'x.pdf' does not end with .svg"),
         ("build", ["-o", "x.txt"], "'x.txt' does not end with .amxmi"),
+        (
+            "analyze",
+            ["--set", "Executor_Task.period=2ms", "-o", "x.json"],
+            "'x.json' does not end with .amxmi or .yaml or .yml",
+        ),
+        ("optimize", ["-o", "x.json"], "'x.json' does not end with .amxmi or .yaml or .yml"),
+        (
+            "calibrate",
+            ["run.log", "-o", "x.amxmi"],
+            "'x.amxmi' does not end with .yaml or .yml; descriptions are written as YAML",
+        ),
+        ("import", ["-o", "x.amxmi"], "'x.amxmi' does not end with .yaml or .yml"),
+        ("init", ["-o", "x.yaml"], "No such option '-o': write the file alone: amuros init --board BOARD FILE."),
     ],
 )
 def test_what_to_write_instead(command, options, message, tmp_path):

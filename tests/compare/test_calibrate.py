@@ -13,7 +13,7 @@ from amalthea_uros.compare.calibration.values import Outcome
 from amalthea_uros.measure.series import MeasuredKind, statistics_of
 from amalthea_uros.services.measure import measure
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
+from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND, Duration
 from amalthea_uros.uros.described import describe_text
 
 SAMPLES = ROOT / "samples"
@@ -38,7 +38,7 @@ def line_of(text, start):
 def trace(tmp_path_factory):
     """A trace of the application as it is, 2 s long."""
     path = tmp_path_factory.mktemp("trace") / "run.btf"
-    options = Options(duration=2 * SECOND, traced=(0, 2 * SECOND))
+    options = Options(duration=Duration(2 * SECOND), traced=(0, Duration(2 * SECOND)))
     simulate_files(SAMPLES / "bodas-test-advanced.yaml", options, trace_paths=[path])
     return path
 

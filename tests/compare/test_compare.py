@@ -136,9 +136,9 @@ def test_another_phase_of_a_message_does_not_refute_the_model(tmp_path):
 
 def test_a_stated_phase_is_compared_strictly(tmp_path):
     trace = tmp_path / "run.csv"
-    simulate(ADVANCED, "100 ms", trace_paths=[trace], settings=amuros.Settings(phases={"Message_Factor": 5 * MILLISECOND}))
+    simulate(ADVANCED, "100 ms", trace_paths=[trace], settings=amuros.Settings(phases={"Message_Factor": "5 ms"}))
     right, wrong = (
-        compare(ADVANCED, trace, settings=amuros.Settings(phases={"Message_Factor": time * MILLISECOND})) for time in (5, 15)
+        compare(ADVANCED, trace, settings=amuros.Settings(phases={"Message_Factor": f"{time} ms"})) for time in (5, 15)
     )
     assert right.holds
     assert not any(row.predicted_range for row in right.rows)

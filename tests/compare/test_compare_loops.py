@@ -12,7 +12,7 @@ from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.trace.sinks import EventRecorder
-from amalthea_uros.units import MILLISECOND, SECOND
+from amalthea_uros.units import MILLISECOND, SECOND, Duration
 
 #: 1 ms in the agent in both directions, and a callback of 1 ms.
 APP = """
@@ -55,7 +55,7 @@ def rows(found, name, quantity, statistic):
 def test_iterations_and_callbacks_of_a_trace_have_what_the_simulation_observed():
     system = open_system(ROOT / "samples" / "robot-xrce.yaml").system
     recorder = EventRecorder()
-    observed = simulate_system(system, Options(duration=SECOND, traced=(0, SECOND)), [recorder])
+    observed = simulate_system(system, Options(duration=Duration(SECOND), traced=(0, Duration(SECOND))), [recorder])
     follower = JobFollower(begins=begins_of(system))
     follower.add(recorder.table)
     follower.finish()

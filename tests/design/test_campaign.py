@@ -30,6 +30,7 @@ from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.units import Duration
 
 
 def runs(count):
@@ -203,7 +204,7 @@ def test_a_cluster_without_the_package(monkeypatch):
 
 @pytest.mark.parametrize("path", [ROOT / "samples" / "drive-and-lift.amxmi", ROOT / "samples" / "drive-and-lift.yaml"])
 def test_the_job_of_a_simulation_can_be_sent_without_the_model_that_it_comes_from(path):
-    options = Options(duration=10**12, settings=Settings(scale=Fraction(1, 3)))
+    options = Options(duration=Duration(10**12), settings=Settings(scale=Fraction(1, 3)))
     origin = SystemOrigin(Configuration(open_system([path]).system, options.settings))
     job = SimulationJob(origin, options, (Change("A", "x", "1ms"),))
     data = pickle.dumps(job)

@@ -106,7 +106,7 @@ def test_a_clock_that_others_have_is_copied(tmp_path):
 
 def test_a_frequency_that_a_setting_has_already_is_written_if_it_is_set(tmp_path):
     """A setting is not part of the model, but a change is."""
-    settings, target = Settings(frequencies={"Core_0": 3 * 10**6}), tmp_path / "changed.amxmi"
+    settings, target = Settings(frequencies={"Core_0": "3 MHz"}), tmp_path / "changed.amxmi"
     amuros.what_if(SAMPLES / "executor.amxmi", ["Core_0.frequency=3MHz"], settings).save(target)
     (clock,) = amuros.extract(amuros.load(target)).system.clocks.values()
     assert clock.frequency == 3 * 10**6

@@ -348,7 +348,7 @@ def test_the_analysis_takes_changes_into_account():
 
 def test_the_phase_of_a_message():
     system = open_system([ROOT / "samples" / "bodas-test-advanced.yaml"]).system
-    assert changed(system, "Message_Factor.phase=5ms").settings == Settings(phases={"Message_Factor": 5 * MS})
+    assert changed(system, "Message_Factor.phase=5ms").settings == Settings(phases={"Message_Factor": "5 ms"})
 
 
 @given(st.text(min_size=1), st.from_regex(r"[a-z_]+", fullmatch=True), st.text(min_size=1))

@@ -31,7 +31,7 @@ def advanced():
 
 
 #: The worst phase of the message, of which there is much less to analyse than of all.
-PHASE = Settings(phases={"Message_Factor": MS})
+PHASE = Settings(phases={"Message_Factor": "1 ms"})
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 from growth import SIZES, growth
 
-from amalthea_uros.design.description.places import Places
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.uros.described import describe_text
 
 
@@ -12,14 +12,14 @@ def _asked(count):
         "amuros: 1\nname: many\nhardware: single-core\nmiddleware: {transport: {can: {bitrate: 250 kbit/s}}}\n"
         f"application:\n  nodes:\n    - name: node\n      timers:\n{timers}\n"
     )
-    # New places each time: what is found is kept with them.
+    # New ones each time: what is found is kept with them.
     return found, [f"T{n}" for n in range(count)]
 
 
 def _stated(asked):
     found, names = asked
-    places = Places(found.description, found.platform, found.core_types, found.assembly.priority_scale)
-    return [places.execution_time(name)[0].path for name in names]
+    built = BuiltObjects(found, "")
+    return [built.execution_time(name)[0].path for name in names]
 
 
 def test_each_execution_time_is_found_without_looking_at_all_others():

@@ -162,8 +162,8 @@ def values_for(key, text):
     present = None if key.part is not None else key.holder.__dict__.get(key.feature.name)
     if key.part is not None:
         unit = getattr(key.part, "unit", None)
-        if str(unit) == "_undefined_":
-            return []
+        if hasattr(key.part, "unit") and str(unit) in ("None", "_undefined_"):
+            return []  # a number without a unit is refused
         numbers = ("1", "7", "20")
         return [((number, unit or ""), f"{number} {str(unit or '').replace('PerSecond', '/s')}".strip()) for number in numbers]
     if key.feature.is_reference:

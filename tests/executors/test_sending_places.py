@@ -9,7 +9,7 @@ from amalthea_uros.perf.activities import Call, Chance, Group, ProbabilitySwitch
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.units import MILLISECOND, SECOND
+from amalthea_uros.units import MILLISECOND, SECOND, Duration
 from amalthea_uros.uros.described import describe_text
 
 MESSAGE = "out_topic_from_C"
@@ -63,7 +63,7 @@ def twice(send, work):
 
 def distances(system):
     """The least distance of two messages by the analysis, and of a simulation."""
-    observed = simulate_system(system, Options(duration=3 * SECOND, seed=1))[MESSAGE]
+    observed = simulate_system(system, Options(duration=Duration(3 * SECOND), seed=1))[MESSAGE]
     return analyze_system(system).processes[MESSAGE].min_interarrival, observed.metrics[JobMetric.ACTIVATE_TO_ACTIVATE].min
 
 

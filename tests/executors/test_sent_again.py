@@ -5,7 +5,7 @@ import pytest
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.runs.run import simulate_system
-from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
+from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND, Duration
 from amalthea_uros.uros.described import describe_text
 
 TEXT = """
@@ -44,7 +44,7 @@ def test_an_iteration_takes_the_timeout_of_its_publication_at_most(system):
 def test_no_simulated_value_is_beyond_a_bound(system):
     analysis = analyze_system(system)
     for mode in (SimulationMode.WORST, SimulationMode.SAMPLED):
-        simulation = simulate_system(system, Options(duration=20 * SECOND, mode=mode))
+        simulation = simulate_system(system, Options(duration=Duration(20 * SECOND), mode=mode))
         (executor,) = simulation.executors
         assert executor.handles["Report"].response_time.max > 90 * MILLISECOND, "no loss delayed it"
         for handle in executor.handles:

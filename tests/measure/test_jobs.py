@@ -13,7 +13,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
-from amalthea_uros.units import MICROSECOND
+from amalthea_uros.units import MICROSECOND, Duration
 
 E = EventKind
 ENTITIES = [Entity(EntityKind.CORE, "Core"), Entity(EntityKind.TASK, "Task"), Entity(EntityKind.RUNNABLE, "Runnable")]
@@ -122,7 +122,7 @@ def test_the_trace_of_a_simulation_has_what_it_observed(parameters, with_chain):
     system = taskset(made, priorities="rate monotonic", chains=chains)
     duration = 10_000 * MICROSECOND
     recorder = EventRecorder()
-    found = simulate_system(system, Options(duration=duration, traced=(0, duration)), [recorder])
+    found = simulate_system(system, Options(duration=Duration(duration), traced=(0, Duration(duration))), [recorder])
     events = recorder.table
     walk, steps = JobFollower(), ChainSteps(begins_of(system).chains)
     for part in (events.rows(0, 50), events.rows(50, len(events))):

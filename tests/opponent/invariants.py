@@ -15,6 +15,7 @@ from opponent.to_text import to_text
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.trace.table import EntityKind, EventKind
+from amalthea_uros.units import Duration
 
 _BEGINS = (EventKind.START, EventKind.RESUME, EventKind.POLL_PARKING)
 _LEAVES = (EventKind.PREEMPT, EventKind.TERMINATE, EventKind.PARK, EventKind.WAIT)
@@ -24,7 +25,7 @@ def violations(plain: PlainSystem, seed: int = 1) -> list[str]:
     """What is wrong in a simulation of a system."""
     text = to_text(plain)
     duration = horizon(read(text))
-    run = record(read_system(text), Options(duration=duration, seed=seed, traced=(0, duration)))
+    run = record(read_system(text), Options(duration=Duration(duration), seed=seed, traced=(0, Duration(duration))))
     return [*_lost_time(run), *_shared_cores(run), *_shared_semaphores(run), *disobeyed_priorities(plain, run)]
 
 

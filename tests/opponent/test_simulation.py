@@ -24,6 +24,7 @@ from opponent.to_perf import MICROSECOND, read_system, to_perf
 from opponent.to_text import to_text
 
 from amalthea_uros.simulate.options import Options
+from amalthea_uros.units import Duration
 
 SIMULATION = Variant(
     accesses_last=True,
@@ -41,7 +42,7 @@ def has_same_jobs(plain):
     text = to_text(plain)
     model = read(text)
     until = horizon(model) // 2
-    found = record(read_system(text), Options(duration=until))
+    found = record(read_system(text), Options(duration=Duration(until)))
     played = play(model, SIMULATION, Choices(1), until).jobs
     return all(
         found.jobs_of(process.name) == [(j.activated, j.start, j.end) for j in jobs if j.end is not None and j.end < until]
@@ -73,7 +74,7 @@ def test_broken_rules_are_found():
 
     plain = {"cores": {"core0": "FPP"}, "semaphores": {}, "runnables": {}, "processes": [task("low", 1), task("high", 2)]}
     reversed_priorities = [p | {"priority": -p["priority"]} for p in plain["processes"]]
-    run = record(to_perf(plain), Options(duration=100 * MICROSECOND, traced=(0, 10**9)))
+    run = record(to_perf(plain), Options(duration=Duration(100 * MICROSECOND), traced=(0, Duration(10**9))))
     assert list(disobeyed_priorities(plain, run)) == []
     assert list(disobeyed_priorities(plain | {"processes": reversed_priorities}, run))
 
@@ -82,7 +83,7 @@ def test_broken_rules_are_found():
 def test_machine_code_plays_as_the_interpreted_kernel_does():
     for seed in every(5, range(25)):
         system = to_perf(random_system(seed))
-        options = Options(duration=500 * MICROSECOND, seed=3, traced=(0, 300 * MICROSECOND))
+        options = Options(duration=Duration(500 * MICROSECOND), seed=3, traced=(0, Duration(300 * MICROSECOND)))
         slow, fast = (record(system, options, is_compiled=compiled) for compiled in (False, True))
         for kind in ("jobs", "observations", "events"):
             np.testing.assert_array_equal(getattr(fast, kind), getattr(slow, kind), err_msg=f"{seed} {kind}")

@@ -11,10 +11,11 @@ from support import ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros.report import formats
+from amalthea_uros.units import Duration
 
 YAML = ROOT / "samples" / "bodas-test-advanced.yaml"
 #: The worst phase of the message: its chain is analysed much faster, and no form of a result is another one.
-PHASE = amuros.Settings(phases={"Message_Factor": 10**9})
+PHASE = amuros.Settings(phases={"Message_Factor": "1 ms"})
 MODEL = ROOT / "samples" / "executor.amxmi"
 
 
@@ -104,7 +105,7 @@ def everything(analysis, simulation):
     yield from (analysis.processes[0], analysis.chains[0], amuros.analyze_files(YAML, PHASE))
     yield from (simulation, simulation.processes, simulation.chains, simulation.cores, simulation.requirements)
     yield from (amuros.check_files(MODEL), amuros.diff(MODEL, ROOT / "samples" / "bodas-test-advanced.amxmi"))
-    yield amuros.simulate_campaign(YAML, amuros.Options(duration=10**9), repetitions=2, workers=1)
+    yield amuros.simulate_campaign(YAML, amuros.Options(duration=Duration(10**9)), repetitions=2, workers=1)
 
 
 class Tags(HTMLParser):

@@ -16,7 +16,7 @@ from amalthea_uros.report.pictures.load_bars import MOST_CORES, draw_loads
 from amalthea_uros.report.pictures.page import embedded
 from amalthea_uros.report.pictures.response_bars import MOST_ROWS, draw_responses
 from amalthea_uros.timing.response import Response
-from amalthea_uros.units import MILLISECOND
+from amalthea_uros.units import MILLISECOND, Duration
 
 SAMPLES = ROOT / "samples"
 MS = MILLISECOND
@@ -143,7 +143,7 @@ def test_a_busy_window_that_begins_before_the_activation_has_a_mark_there(analys
 
 def test_observed_response_times_are_below_the_bars(analysis):
     system = SAMPLES / "bodas-test-advanced.yaml"
-    run = simulate_files(system, Options(duration=25 * MS)).simulation
+    run = simulate_files(system, Options(duration=Duration(25 * MS))).simulation
     picture = draw_responses(analysis, run)
     # The executor takes 12 us, and 13 us more for a message.
     assert "observed 12 us to 25 us" in picture

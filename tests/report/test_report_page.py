@@ -24,7 +24,7 @@ from amalthea_uros.units import MILLISECOND, Duration, Rounding, rounded_time_te
 SAMPLES = ROOT / "samples"
 ADVANCED = SAMPLES / "bodas-test-advanced.yaml"
 #: The worst phase of the message: the page is the same, but for that it is assumed, and made in no time.
-PHASE = Settings(phases={"Message_Factor": 10**9})
+PHASE = Settings(phases={"Message_Factor": "1 ms"})
 EXECUTOR = SAMPLES / "executor.amxmi"
 ALL = every(3, sorted([*SAMPLES.glob("*.yaml"), EXECUTOR]))
 #: Elements of HTML that have no end tag.
@@ -163,6 +163,12 @@ def test_what_would_shorten_the_worst_chain_is_told():
     shown = text(section(page_of(ADVANCED), "chains"))
     assert "What would shorten it" in shown
     assert "analysed, one at a time" in shown
+
+
+def test_a_percentage_stays_in_one_line():
+    cells = [cell.text_content() for cell in parsed(page_of(EXECUTOR)).xpath("//td")]
+    assert any("\N{NO-BREAK SPACE}%" in cell for cell in cells)
+    assert [cell for cell in cells if " %" in cell] == []
 
 
 def test_hidden_characters_are_shown():

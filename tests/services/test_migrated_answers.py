@@ -14,7 +14,7 @@ from amalthea_uros.services.format import format_files
 from amalthea_uros.services.migrate import migrate_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Options
-from amalthea_uros.units import MILLISECOND
+from amalthea_uros.units import MILLISECOND, Duration
 from amalthea_uros.xmi.emf.versions import is_older
 
 CORPUS = SHARED / "corpus"
@@ -103,7 +103,7 @@ NOT_STATED = [
 
 def observed(paths):
     """What a short run shows."""
-    simulation = simulate_files(paths, Options(duration=100 * MILLISECOND)).simulation
+    simulation = simulate_files(paths, Options(duration=Duration(100 * MILLISECOND))).simulation
     return [(each.name, each.jobs, each.response_time) for each in simulation.processes]
 
 

@@ -6,7 +6,7 @@ from test_migrated_answers import observed, with_item
 from amalthea_uros import analyze_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.simulate.options import Mode, Options
-from amalthea_uros.units import MILLISECOND
+from amalthea_uros.units import MILLISECOND, Duration
 
 #: At 100 MHz, 100000 ticks take 1 ms.
 BOUNDS = 'lowerBound="100000" upperBound="200000"'
@@ -30,7 +30,7 @@ def test_ticks_between_two_bounds(kind, missing, tmp_path):
     assert f"DiscreteValue{kind} is incomplete: it has no {missing}" in {finding.message for finding in result.findings}
     assert observed([path]) == []
     for mode, expected in ((Mode.WORST, 2), (Mode.BEST, 1)):
-        options = Options(duration=20 * MILLISECOND, mode=mode)
+        options = Options(duration=Duration(20 * MILLISECOND), mode=mode)
         simulation = simulate_files([path], options).simulation
         assert simulation.processes["A"].response_time.max == expected * MILLISECOND
 

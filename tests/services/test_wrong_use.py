@@ -59,7 +59,7 @@ WRONG_VALUES = {
         "'never'; expected one of error, warning",
     ),
     "a core that does not exist": (
-        lambda r: amuros.analyze_files(ADVANCED, amuros.Settings(frequencies={"Core_1": 1})),
+        lambda r: amuros.analyze_files(ADVANCED, amuros.Settings(frequencies={"Core_1": "1 Hz"})),
         "unknown core 'Core_1'; did you mean 'Core_0'",
     ),
     "a process that does not exist": (

@@ -10,6 +10,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 
 def built(*processes, modes=(), mode_labels=(), channels=(), stimuli=(), **parts):
@@ -58,7 +59,7 @@ class Played:
 
 def play(model, until, traced=False):
     """Play a system; all its processes must be simulated."""
-    found = record(model, Options(duration=until * US, traced=(0, until * US) if traced else None))
+    found = record(model, Options(duration=Duration(until * US), traced=(0, Duration(until * US)) if traced else None))
     assert found.program.left_out == {}
     return Played(found)
 

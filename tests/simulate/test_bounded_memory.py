@@ -12,7 +12,7 @@ from amalthea_uros.simulate.runs import driver
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.simulate.sampling.words import RandomSource
 from amalthea_uros.units import MICROSECOND as US
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_dense_occurrences_are_prepared_in_short_windows():
 
 
 def test_more_occurrences_than_can_be_simulated_are_refused_with_their_number():
-    found = simulate_system(built(Proc("T", (ticks(1),), 1)), Options(duration=2000 * SECOND))
+    found = simulate_system(built(Proc("T", (ticks(1),), 1)), Options(duration=Duration(2000 * SECOND)))
     (finding,) = found.findings
     assert (finding.rule, finding.object) == ("SIM001", "T")
     assert "occurs 2,000,000,000 times in 2000 s; at most 1,000,000,000 occurrences" in finding.message
@@ -57,7 +57,7 @@ def test_more_occurrences_than_can_be_simulated_are_refused_with_their_number():
 def test_a_run_ends_where_no_more_activations_can_be_kept(monkeypatch):
     monkeypatch.setattr(driver, "WAITING_NUMBERS", 300)
     often = Proc("often", (ticks(2),), 1, task={"activation_limit": 10**9})
-    found = simulate_system(built(often), Options(duration=10**4 * US))
+    found = simulate_system(built(often), Options(duration=Duration(10**4 * US)))
     (finding,) = [each for each in found.findings if each.rule == "SIM007"]
     assert finding.object == "often"
     assert finding.message.endswith("activations of 'often' wait; the run ends there")

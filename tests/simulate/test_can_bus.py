@@ -15,7 +15,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.units import NANOSECOND as NS
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 from amalthea_uros.uros.network.classic_bus import BusTransmission, with_bus
 from amalthea_uros.uros.transports.can import CanBus
 
@@ -33,7 +33,9 @@ def message(name, identifier, frames, offset=0, period=SECOND, jitter=0):
 
 
 def simulated(messages, duration=100 * MS, mode=Mode.WORST, bit_rate=1_000_000):
-    return simulate_system(with_bus(System(), CanBus(bit_rate=bit_rate), messages), Options(duration=duration, mode=mode))
+    return simulate_system(
+        with_bus(System(), CanBus(bit_rate=bit_rate), messages), Options(duration=Duration(duration), mode=mode)
+    )
 
 
 def response_times(messages, **options):
@@ -111,7 +113,7 @@ def bus_of(case, offsets=None):
 def test_no_message_takes_longer_than_independent_analyses_say(case, mode):
     system = bus_of(case)
     bounds = dict(zip((task["name"] for task in case["tasks"]), case["expected_wcrt"], strict=True))
-    found = simulate_system(system, Options(duration=SECOND, mode=mode))
+    found = simulate_system(system, Options(duration=Duration(SECOND), mode=mode))
     assert {name: found[name].response_time.max <= bound * NS for name, bound in bounds.items()} == dict.fromkeys(bounds, True)
     analysis = analyze_system(system)
     # Their analysis counts messages that are queued up to a bit time after the start of a frame, ours does not.
@@ -131,5 +133,5 @@ def test_the_worst_case_is_reached_where_all_are_queued_just_after_the_longest_f
         if bound <= shortest:
             blocking = max(tasks[number + 1 :], key=lambda other: other["wcet"], default=None)
             offsets = {other["name"]: 1 for other in tasks if other is not blocking} if blocking else {}
-            found = simulate_system(bus_of(case, offsets), Options(duration=2 * bound * NS, mode=Mode.WORST))
+            found = simulate_system(bus_of(case, offsets), Options(duration=Duration(2 * bound * NS), mode=Mode.WORST))
             assert found[task["name"]].response_time.max == bound * NS - (1 if blocking else 0)

@@ -29,6 +29,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity as Q
 from amalthea_uros.timing.observed import chain_latencies
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 MAX_JOBS = 1500
 
@@ -348,7 +349,7 @@ def test_ways_of_which_only_some_decide(completed, verdict):
     )
     limit = LatencyConstraint(name="limit", chain="ways", maximum=10 * US)
     built = replace(built, constraints=Constraints(constraints=(limit,)))
-    (found,) = simulate_system(built, Options(duration=200 * US)).requirements
+    (found,) = simulate_system(built, Options(duration=Duration(200 * US))).requirements
     assert found.verdict is verdict
     (proved,) = analyze_system(built).requirements
     assert str(proved.verdict) == ("met" if completed == 1 else "unknown")

@@ -15,7 +15,7 @@ from support import SHARED
 from amalthea_uros import Mode, Options, Settings, analyze_system, extract, load
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 
 MODEL = SHARED / "corpus" / "WATERS_2017_v072.amxmi"
 FIGURES = SHARED / "vectors" / "waters2017.json"
@@ -48,7 +48,7 @@ def run(system, settings):
     @cache
     def simulated(mode):
         duration = SAMPLED_DURATION if mode is Mode.SAMPLED else SECOND
-        return simulate_system(system, Options(duration=duration, mode=mode, settings=settings))
+        return simulate_system(system, Options(duration=Duration(duration), mode=mode, settings=settings))
 
     return simulated
 

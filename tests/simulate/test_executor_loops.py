@@ -23,7 +23,7 @@ from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 from amalthea_uros.uros.described import describe_content, describe_text
 
 BLOCK = 15
@@ -84,7 +84,10 @@ def test_nothing_that_is_observed_exceeds_a_bound(block):
     for seed in BOUNDED[block : block + BLOCK]:
         content, _ = test_whole_way.drawn(random.Random(seed))
         system = describe_content(content).assembly.system
-        analysis, simulation = analyze_system(system), simulate_system(system, Options(duration=SECOND // 4, seed=seed))
+        analysis, simulation = (
+            analyze_system(system),
+            simulate_system(system, Options(duration=Duration(SECOND // 4), seed=seed)),
+        )
         for bounded, observed in zip(analysis.executors, simulation.executors, strict=True):
             for handle in observed.handles:
                 bound, seen = bounded.handles[handle.name], handle.response_time
@@ -104,7 +107,9 @@ def test_nothing_that_is_observed_exceeds_a_bound(block):
 
 
 def simulated(*handles, duration=SECOND, **parts):
-    (executor,) = simulate_system(looping(*handles, **parts), Options(duration=duration, mode=SimulationMode.BEST)).executors
+    (executor,) = simulate_system(
+        looping(*handles, **parts), Options(duration=Duration(duration), mode=SimulationMode.BEST)
+    ).executors
     return executor
 
 
@@ -125,7 +130,7 @@ def test_one_message_is_taken_in_each_iteration():
 
 def test_an_executor_whose_publications_wait_for_an_unknown_time_is_left_out():
     handle = timer("control", 100_000, 10, publications=(waiting_publication(timeout=50 * MS),))
-    (left_out,) = simulate_system(looping(handle, loop=SPIN, spin=10), Options(duration=SECOND)).left_out
+    (left_out,) = simulate_system(looping(handle, loop=SPIN, spin=10), Options(duration=Duration(SECOND))).left_out
     assert "how long the publication of 'odom' waits" in left_out.reason
 
 
@@ -199,7 +204,7 @@ def test_machine_code_executes_loops_alike(sample, monkeypatch):
     pytest.importorskip("numba")
     system, options = (
         open_system([ROOT / "samples" / f"{sample}.yaml"]).system,
-        Options(duration=2 * SECOND, traced=(0, SECOND)),
+        Options(duration=Duration(2 * SECOND), traced=(0, Duration(SECOND))),
     )
     results = []
     for is_compiled in (False, True):
@@ -235,7 +240,7 @@ def test_polling_before_a_timer_is_iterations_of_its_executor(semantics, trigger
     """With timers only, waits return at once: in each 10 ms, a call of 500 us, and iterations of 100 us all the time."""
     system = describe_text(POLLING.replace("SEMANTICS", semantics).replace("TRIGGER", trigger)).assembly.system
     for mode in (SimulationMode.WORST, SimulationMode.SAMPLED):
-        simulation = simulate_system(system, Options(duration=100 * MS, mode=mode))
+        simulation = simulate_system(system, Options(duration=Duration(100 * MS), mode=mode))
         (executor,) = simulation.executors
         assert executor.iterations == pytest.approx(10 * 95, abs=10)
         assert simulation["main"].response_time.max == 600 * US
@@ -245,7 +250,9 @@ def test_the_operating_system_activates_each_iteration_once():
     """Also if that takes an interrupt: 10 us for each iteration of 100 us, beside a call of 500 us in each 10 ms."""
     os = "os: {overhead: {activation: 10 us, activations_run_in: interrupt}}"
     text = POLLING.replace("SEMANTICS", "ROS").replace("TRIGGER", "any").replace("middleware:", f"{os}\nmiddleware:", 1)
-    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=100 * MS, mode=SimulationMode.WORST))
+    simulation = simulate_system(
+        describe_text(text).assembly.system, Options(duration=Duration(100 * MS), mode=SimulationMode.WORST)
+    )
     (executor,) = simulation.executors
     assert simulation["main_Activation"].jobs == pytest.approx(executor.iterations, abs=1)
     assert executor.iterations == pytest.approx(10 * (10_000 - 500) / 110, abs=5)
@@ -294,7 +301,7 @@ def test_a_chain_through_an_agent_of_unknown_time_is_not_followed(tmp_path):
 
 def test_a_service_without_a_rate_makes_the_executor_unknown():
     (left_out,) = simulate_system(
-        looping(message("cmd", None), timer("control", 10_000, 10), loop=SPIN, spin=10), Options(duration=SECOND)
+        looping(message("cmd", None), timer("control", 10_000, 10), loop=SPIN, spin=10), Options(duration=Duration(SECOND))
     ).left_out
     assert "how often something arrives for 'cmd'" in left_out.reason
 
@@ -309,7 +316,7 @@ def test_who_waits_for_an_acknowledgement_outside_an_executor_is_left_out(tmp_pa
 def test_the_wait_of_an_iteration_is_no_job_that_is_late():
     """A run that ends in a wait of up to 1 s says nothing about a limit of the iterations."""
     found = looping(message("cmd", 400_000, 10, phase=MS, depth=1), loop=SPIN, spin=10)
-    executor = simulate_system(found, Options(duration=SECOND, mode=SimulationMode.BEST))["Executor"]
+    executor = simulate_system(found, Options(duration=Duration(SECOND), mode=SimulationMode.BEST))["Executor"]
     assert (executor.unfinished, executor.longest_unfinished) == (0, 0)
 
 
@@ -319,7 +326,7 @@ def test_a_guard_condition_that_ends_no_wait_disturbs_nobody():
     system = looping(
         guard("stop", 7000, phase=MS), message("cmd", 1_000_000, phase=2 * SECOND, depth=1), loop=SPIN, spin=10, others=(below,)
     )
-    found = simulate_system(system, Options(duration=SECOND, mode=SimulationMode.BEST))
+    found = simulate_system(system, Options(duration=Duration(SECOND), mode=SimulationMode.BEST))
     assert found["below"].preemptions.total == 0
 
 
@@ -340,7 +347,8 @@ def test_activities_around_the_iteration_are_executed():
     (task,) = found.software.tasks
     busier = replace(task, activities=(Group(ordered=True, activities=(ticks(200),)), *task.activities))
     simulation = simulate_system(
-        replace(found, software=replace(found.software, tasks=(busier,))), Options(duration=SECOND, mode=SimulationMode.BEST)
+        replace(found, software=replace(found.software, tasks=(busier,))),
+        Options(duration=Duration(SECOND), mode=SimulationMode.BEST),
     )
     assert simulation["Executor"].response_time.max == 600 * US
 

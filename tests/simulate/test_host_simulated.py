@@ -31,7 +31,7 @@ from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 from amalthea_uros.uros.described import describe_text
 
 ROBOT = re.search(r'```yaml title="robot.yaml"\n(.*?)```', (ROOT / "docs" / "ros2-host.md").read_text(), re.DOTALL)[1]
@@ -53,7 +53,7 @@ class Fixed:
 
 def observed(system, duration, **options):
     """The callbacks of the simulated host by name."""
-    found = simulate_system(system, Options(duration=duration, **options))
+    found = simulate_system(system, Options(duration=Duration(duration), **options))
     assert not found.errors
     return {handle.name: handle for handle in callbacks_of(found)}
 
@@ -175,10 +175,12 @@ def test_machine_code_has_the_same_results(monkeypatch):
     results = []
     for is_compiled in (False, True):
         monkeypatch.setattr(machine_code, "is_worth_it", lambda *_, is_compiled=is_compiled: is_compiled)
-        found = [simulate_system(describe_text(ROBOT).assembly.system, Options(duration=10 * SECOND))]
+        found = [simulate_system(describe_text(ROBOT).assembly.system, Options(duration=Duration(10 * SECOND)))]
         for kind in KINDS:
-            found.append(simulate_system(system_of(*random_threads(Random(f"{kind} 7"), kind)), Options(duration=5000)))
-        found.append(simulate_system(reserved([("A", 100, 8), ("B", 130, 6)], 10, 40), Options(duration=5000)))
+            found.append(
+                simulate_system(system_of(*random_threads(Random(f"{kind} 7"), kind)), Options(duration=Duration(5000)))
+            )
+        found.append(simulate_system(reserved([("A", 100, 8), ("B", 130, 6)], 10, 40), Options(duration=Duration(5000))))
         results.append([(each.processes, each.host, each.chains) for each in found])
     assert results[0] == results[1]
 
@@ -186,7 +188,7 @@ def test_machine_code_has_the_same_results(monkeypatch):
 @pytest.mark.parametrize(("text", "seed"), [(ROBOT, 1), (ROBOT, 2), (SAMPLE, 1)], ids=["robot-1", "robot-2", "sample"])
 def test_a_robot_with_its_host_is_within_its_bounds(text, seed):
     analysis = analyze(text)
-    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=20 * SECOND, seed=seed))
+    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=Duration(20 * SECOND), seed=seed))
     for bounds, seen in ((analysis.executors, simulation.executors), (analysis.host, simulation.host)):
         for handle in (handle for executor in seen for handle in executor.handles):
             bound = next(each.handles[handle.name] for each in bounds if handle.name in each.handles.names)
@@ -201,7 +203,7 @@ def test_a_robot_with_its_host_is_within_its_bounds(text, seed):
 def test_several_publishers_of_the_host_send_what_the_controller_gets():
     """Watch publishes every 20 ms, and On_Odom every 100 ms: up to 60 messages in a second instead of the 10 that are stated."""
     text = ROBOT.replace("max: 3 ms}}", "max: 3 ms}, publishes: [cmd_vel]}")
-    (spin,) = simulate_system(describe_text(text).assembly.system, Options(duration=10 * SECOND)).executors
+    (spin,) = simulate_system(describe_text(text).assembly.system, Options(duration=Duration(10 * SECOND))).executors
     assert 550 < spin.handles["On_Cmd"].calls + spin.handles["On_Cmd"].lost <= 600
 
 
@@ -216,7 +218,7 @@ def test_several_publishers_of_the_host_send_what_the_controller_gets():
 )
 def test_a_host_is_left_out_with_its_reason(old, new, reason):
     """Then messages come as the controller states."""
-    simulation = simulate_system(describe_text(ROBOT.replace(old, new)).assembly.system, Options(duration=1 * SECOND))
+    simulation = simulate_system(describe_text(ROBOT.replace(old, new)).assembly.system, Options(duration=Duration(1 * SECOND)))
     assert not simulation.host
     assert any("the host is not simulated" in each and reason in each for each in simulation.assumptions)
     assert 9 <= simulation.executors[0].handles["On_Cmd"].calls <= 11
@@ -227,7 +229,7 @@ def test_a_host_is_left_out_with_its_reason(old, new, reason):
 def test_the_host_is_left_out_with_what_sends_to_it():
     """It is unknown how long the controller waits for acknowledgements; without it, no odometry would come."""
     text = ROBOT.replace(", acknowledgement: {min: 0.2 ms, max: 2 ms}", "").replace("best-effort}]", "reliable}]")
-    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=1 * SECOND))
+    simulation = simulate_system(describe_text(text).assembly.system, Options(duration=Duration(1 * SECOND)))
     assert "Spin" in {each.name for each in simulation.left_out}
     assert any("'host/control' is not simulated: depends on 'Spin'" in each for each in simulation.errors)
     assert not simulation.host
@@ -270,7 +272,7 @@ def test_a_simulation_of_several_threads_is_the_schedule_of_the_player(seed):
 def test_nothing_that_is_simulated_exceeds_a_bound(kind, seed):
     threads, sources, paths = random_threads(Random(f"{kind} {seed}"), kind)
     system = system_of(threads, sources, paths)
-    analysis, simulation = analyze_system(system), simulate_system(system, Options(duration=5000, seed=seed))
+    analysis, simulation = analyze_system(system), simulate_system(system, Options(duration=Duration(5000), seed=seed))
     bounds = {handle.name: handle.response.worst for executor in analysis.host for handle in executor.handles}
     for handle in callbacks_of(simulation):
         assert bounds[handle.name] is None or not handle.calls or handle.response_time.max <= bounds[handle.name], handle.name

@@ -29,7 +29,7 @@ from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import EventKind
-from amalthea_uros.units import MILLISECOND, SECOND
+from amalthea_uros.units import MILLISECOND, SECOND, Duration
 from amalthea_uros.uros.described import describe_content, describe_text
 
 BLOCK = 20
@@ -67,7 +67,7 @@ class Run:
     """
 
     def __init__(self, system, until, lost):
-        options = Options(duration=until, mode=SimulationMode.AVERAGE)
+        options = Options(duration=Duration(until), mode=SimulationMode.AVERAGE)
         context = TimingContext.of_scheduling(with_first_arrivals(with_steps(system), {}), options.settings)
         program, jobs, observed = build_program(context, options), [], []
         assert program.left_out == {}
@@ -313,7 +313,7 @@ def lost(losses, mode, *, until=20, seed=1):
     text = TEXT.replace(STATED, losses).replace("2 s\n          phase: 100 ms", "50 ms\n          phase: 10 ms")
     text = text.replace("size: 4 B, reliability: reliable", "size: 4 B, reliability: best-effort")
     system = describe_text(text).assembly.system
-    found = simulate_system(system, Options(duration=until * SECOND, mode=mode, seed=seed)).losses
+    found = simulate_system(system, Options(duration=Duration(until * SECOND), mode=mode, seed=seed)).losses
     return [sum(each.lost for each in found if each.name.startswith(topic)) for topic in ("out", "go")]
 
 
@@ -352,7 +352,7 @@ def test_other_random_values_do_not_change():
     found = []
     for stated in ("{to_agent: 1 per 10 s}", "{to_agent: 10 %}"):
         system = describe_text(text.replace(STATED, stated)).assembly.system
-        found.append(simulate_system(system, Options(duration=SECOND)).processes["go_topic_to_go"].metrics)
+        found.append(simulate_system(system, Options(duration=Duration(SECOND))).processes["go_topic_to_go"].metrics)
     assert found[0] == found[1]
 
 
@@ -360,7 +360,9 @@ def test_a_trace_shows_what_is_lost_and_sent_again():
     """In the mode `worst`, the first message is lost: on the wire until 105, and again until 209."""
     system = describe_text(TEXT.replace(STATED, "{to_agent: 1 per 10 s}")).assembly.system
     recorder = EventRecorder()
-    simulate_system(system, Options(duration=SECOND, mode=SimulationMode.WORST, traced=(0, SECOND)), [recorder])
+    simulate_system(
+        system, Options(duration=Duration(SECOND), mode=SimulationMode.WORST, traced=(0, Duration(SECOND))), [recorder]
+    )
     seen = [(time // MS // 1000, kind, target.name) for time, kind, _, _, target, *_ in said([recorder.table])]
     assert [time for time, *what in seen if what == [EventKind.TRIGGER, "losses on Transport"]] == [105]
     assert [time for time, *what in seen if what == [EventKind.TERMINATE, "out_topic_from_go"]] == [105, 209]
@@ -375,7 +377,10 @@ def test_machine_code_loses_alike(monkeypatch):
     pytest.importorskip("numba")
     text = RELIABLE.replace(EVERY, "70 ms\n          phase: 10 ms").replace("chains:", LATER.replace("2 s", "90 ms"))
     text = text.replace(STATED, "10 %")
-    system, options = describe_text(text).assembly.system, Options(duration=5 * SECOND, traced=(0, 5 * SECOND))
+    system, options = (
+        describe_text(text).assembly.system,
+        Options(duration=Duration(5 * SECOND), traced=(0, Duration(5 * SECOND))),
+    )
     results = []
     for is_compiled in (False, True):
         monkeypatch.setattr(machine_code, "is_worth_it", lambda *_, is_compiled=is_compiled: is_compiled)
@@ -386,14 +391,14 @@ def test_machine_code_loses_alike(monkeypatch):
 
 def test_the_assumptions_state_the_losses():
     system = describe_text(TEXT.replace(STATED, "1 per 10 s")).assembly.system
-    assumptions = simulate_system(system, Options(duration=SECOND)).assumptions
+    assumptions = simulate_system(system, Options(duration=Duration(SECOND))).assumptions
     assert "'Transport' loses at most 1 message in any 10 s" in assumptions
     assert not any("no message is lost" in each for each in assumptions)
 
 
 def test_the_best_mode_says_that_nothing_is_lost():
     system = describe_text(TEXT.replace(STATED, "1 per 10 s")).assembly.system
-    assumptions = simulate_system(system, Options(duration=SECOND, mode=SimulationMode.BEST)).assumptions
+    assumptions = simulate_system(system, Options(duration=Duration(SECOND), mode=SimulationMode.BEST)).assumptions
     assert "no message is lost on 'Transport' in the mode best, whatever losses are stated" in assumptions
 
 
@@ -404,7 +409,7 @@ def test_a_run_in_which_answers_multiply_ends_and_says_so(monkeypatch):
         "time: 1 ms}]}", "time: 1 us}]}"
     )
     text = text.replace(EVERY, "2 ms\n          phase: 10 ms").replace(STATED, "30 %")
-    found = simulate_system(describe_text(text).assembly.system, Options(duration=1000 * SECOND))
+    found = simulate_system(describe_text(text).assembly.system, Options(duration=Duration(1000 * SECOND)))
     (finding,) = [each for each in found.findings if each.rule == "SIM006"]
     assert finding.severity is Severity.ERROR
     assert "more than 1,024 messages" in finding.message
@@ -413,7 +418,7 @@ def test_a_run_in_which_answers_multiply_ends_and_says_so(monkeypatch):
 
 def test_an_executor_whose_messages_are_undefined_is_left_out():
     system = replace(describe_text(TEXT).assembly.system, network=Network())
-    reasons = {each.name: each.reason for each in simulate_system(system, Options(duration=SECOND)).left_out}
+    reasons = {each.name: each.reason for each in simulate_system(system, Options(duration=Duration(SECOND))).left_out}
     assert reasons["Executor"] == "it receives messages for 'go': 'go_topic_to_go' is undefined"
 
 
@@ -421,7 +426,7 @@ def test_a_reliable_message_of_a_task_without_a_loop_is_left_out():
     """Nobody who is simulated sends it again."""
     text = TEXT.replace("loop: {spin: 1 s}", "period: 10 ms")
     text = text.replace("  transport:", "  reliable: {waits: false}\n  transport:")
-    (left_out,) = simulate_system(describe_text(text).assembly.system, Options(duration=SECOND)).left_out
+    (left_out,) = simulate_system(describe_text(text).assembly.system, Options(duration=Duration(SECOND))).left_out
     assert "sends or receives it again" in left_out.reason
 
 

@@ -25,7 +25,7 @@ from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 
 THESIS = describe(ROOT / "samples" / "bodas-test-advanced.yaml").system
 RCLC = describe(ROOT / "samples" / "rclc-in-executor.yaml").system
@@ -38,7 +38,7 @@ def interpreted(monkeypatch):
 
 def simulate(*changes, system=THESIS, duration=200 * MS, sinks=(), **options):
     changed, settings_ = apply(system, Settings(), map(parse_change, changes))
-    return simulate_system(changed, Options(duration=duration, settings=settings_, **options), sinks)
+    return simulate_system(changed, Options(duration=Duration(duration), settings=settings_, **options), sinks)
 
 
 def observed(simulation):
@@ -97,7 +97,7 @@ def taking_jobs(arrivals, activations):
 def test_irregular_arrivals(changes):
     """The jobs that take 25 us are those that a queue by the book gives messages to."""
     recorder = EventRecorder()
-    found = simulate(*changes, sinks=[recorder], traced=(0, 200 * MS))
+    found = simulate(*changes, sinks=[recorder], traced=(0, "200 ms"))
     events, names = recorder.table, np.array([entity.name for entity in recorder.table.entities])
     arrivals, activations, starts, ends = (
         events.time[(events.kind == kind) & (names[events.target] == name)].tolist()
@@ -179,4 +179,4 @@ def test_wrong_values(text):
 
 def test_a_trace_changes_nothing():
     """Random numbers belong to places of the model, not of the program, in which a trace has more operations."""
-    assert simulate(system=RCLC, traced=(0, MS)) == simulate(system=RCLC)
+    assert simulate(system=RCLC, traced=(0, "1 ms")) == simulate(system=RCLC)

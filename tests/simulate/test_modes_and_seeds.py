@@ -34,7 +34,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 
 
 def between(low, average, high):
@@ -79,7 +79,9 @@ def test_net_execution_times_are_ordered_by_the_modes(body, called, seed):
     runnables = (Runnable(name="work", activities=(called,)),)
     model = system(Proc("task", tuple(body), 2000, priority=1), runnables=runnables)
     found = {
-        mode: simulate_system(model, Options(duration=100 * MS, mode=mode, seed=seed))["task"].metrics[JobMetric.RUNNING_TIME]
+        mode: simulate_system(model, Options(duration=Duration(100 * MS), mode=mode, seed=seed))["task"].metrics[
+            JobMetric.RUNNING_TIME
+        ]
         for mode in Mode
     }
     best, worst = found[Mode.BEST], found[Mode.WORST]
@@ -101,7 +103,7 @@ def is_skewed(distribution):
 def test_the_average_of_many_samples_is_near_the_average_mode(distribution):
     model = system(Proc("task", (Execute(demand=Demand(ticks=distribution)),), 100, priority=1))
     found = {
-        mode: simulate_system(model, Options(duration=100 * MS, mode=mode))["task"].metrics[JobMetric.RUNNING_TIME]
+        mode: simulate_system(model, Options(duration=Duration(100 * MS), mode=mode))["task"].metrics[JobMetric.RUNNING_TIME]
         for mode in (Mode.SAMPLED, Mode.AVERAGE)
     }
     sampled, average = found[Mode.SAMPLED], found[Mode.AVERAGE]
@@ -114,7 +116,7 @@ DRIVE = describe(ROOT / "samples" / "drive-and-lift.yaml").system_with_bus()
 
 
 def played(seed=1, system=DRIVE, mode=Mode.SAMPLED, duration=SECOND // 5):
-    return simulate_system(system, Options(duration=duration, seed=seed, mode=mode))
+    return simulate_system(system, Options(duration=Duration(duration), seed=seed, mode=mode))
 
 
 def values(simulation):
@@ -160,7 +162,9 @@ def test_a_task_of_lower_priority_does_not_change_what_others_draw():
     varying = (Execute(demand=Demand(ticks=Uniform(lower=1, upper=50))),)
     high, low = Proc("high", varying, 100, priority=2), Proc("low", varying, 150, priority=1)
     isr = Proc("isr", (ticks(3),), 130, priority=1, is_isr=True)
-    alone, together = (simulate_system(system(*found, isr), Options(duration=50 * MS)) for found in ((high,), (high, low)))
+    alone, together = (
+        simulate_system(system(*found, isr), Options(duration=Duration(50 * MS))) for found in ((high,), (high, low))
+    )
     assert together["high"] == alone["high"]
 
 

@@ -35,6 +35,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 STATE = Mode(name="State", literals=("off", "slow", "fast"))
 NUMBER = Mode(name="Number")
@@ -157,7 +158,7 @@ def test_a_full_channel_takes_no_more_and_counts_what_is_lost():
     # At 1 there are 2 elements; 2 more at 11 are one too many for 3 places, and at 21 none of 2 fits.
     sender = Proc("sender", (ticks(1), Send(channel="c", elements=2)), 10, **TASK)
     model = built(sender, channels=(Channel(name="c", capacity=3),))
-    found = simulate_system(model, Options(duration=30 * US))
+    found = simulate_system(model, Options(duration=Duration(30 * US)))
     assert [(each.rule, each.message) for each in found.findings] == [("SIM004", "the channel 'c' was full: 3 elements lost")]
 
 
@@ -227,7 +228,7 @@ def test_a_call_raises_its_events_as_often_as_it_takes_place(repeated, seconds):
         events=events,
         chains=(EventChain(name="way", stimulus="starts", response="finished"),),
     )
-    found = simulate_system(model, Options(duration=100_000 * US))
+    found = simulate_system(model, Options(duration=Duration(100_000 * US)))
     assert (found["first"].jobs, found["second"].jobs) == (100, seconds)
     if "counter" in repeated:
         # From the start of the call: it takes 10 us, the rest of the job 10 us, and the job that its end activates 10 us.

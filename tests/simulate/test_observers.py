@@ -59,6 +59,7 @@ from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 OK, MISSED, NOT_OBSERVED = ObservedVerdict.OK, ObservedVerdict.MISSED, ObservedVerdict.NOT_OBSERVED
 
@@ -98,7 +99,7 @@ def system(bodies, *, periods, runnables=None, offsets=None, cores=None, events=
 
 
 def simulated(model, milliseconds=100, labels=(), communication=None):
-    options = Options(duration=milliseconds * MS, labels=labels, settings=Settings(communication=communication))
+    options = Options(duration=Duration(milliseconds * MS), labels=labels, settings=Settings(communication=communication))
     return simulate_system(model, options)
 
 

@@ -3,7 +3,7 @@
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.units import MILLISECOND
+from amalthea_uros.units import MILLISECOND, Duration
 from amalthea_uros.uros.described import describe_text
 
 #: The driver looks every tick, so that a heartbeat of the agent, drawn to wait less, comes before the message that it announces.
@@ -24,6 +24,6 @@ application:
 
 
 def test_nothing_is_sent_again_because_a_later_message_is_read_earlier():
-    found = simulate_system(describe_text(APPLICATION).assembly.system, Options(duration=500 * MILLISECOND, seed=1))
+    found = simulate_system(describe_text(APPLICATION).assembly.system, Options(duration=Duration(500 * MILLISECOND), seed=1))
     # Its messages enter the wire 10 ms apart, less what they are kept in the agent.
     assert found["in_topic_to_C"].metrics[JobMetric.ACTIVATE_TO_ACTIVATE].min >= 9_517_000_000

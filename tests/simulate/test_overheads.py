@@ -35,6 +35,7 @@ from amalthea_uros.timing.basics.settings import MemoryModel as MemoryCost
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 SCHEDULER = Scheduler(name="s0", policy=Policy.OSEK, cores=("c0",))
 
@@ -61,7 +62,7 @@ def microseconds(found):
 def responses(system, mode=Mode.WORST, **settings):
     """The longest simulated response times in microseconds, which must be within the bounds of the analysis."""
     settings = Settings(**settings)
-    found = simulate_system(system, Options(duration=100 * MS, mode=mode, settings=settings))
+    found = simulate_system(system, Options(duration=Duration(100 * MS), mode=mode, settings=settings))
     bounds = analyze_system(system, settings).processes
     for process in found.processes:
         bound = bounds[process.name].response
@@ -96,7 +97,7 @@ def test_a_decision_for_a_task_of_lower_priority_delays_the_running_one():
 
 def test_the_load_of_a_core_includes_decisions():
     model = system(job("only", [ticks(90)], period=1000), schedulers=[DECIDING])
-    found = simulate_system(model, Options(duration=100 * MS))
+    found = simulate_system(model, Options(duration=Duration(100 * MS)))
     assert (found.cores["c0"].load, found["only"].load) == (Fraction(1, 10), Fraction(95, 1000))
 
 
@@ -140,7 +141,7 @@ def test_services_add_to_the_time_of_their_callers(activities, services, kind):
         semaphores=(Semaphore(name="lock", kind=kind),),
     )
     inside = sum(7 for activity in activities if isinstance(activity, Group))
-    found = simulate_system(model, Options(duration=2000 * MS))
+    found = simulate_system(model, Options(duration=Duration(2000 * MS)))
     expected = 100 + inside + sum(costs[service] for service in services)
     assert microseconds(found["task"].response_time.max) == expected
     response = analyze_system(model).processes["task"].response
@@ -250,7 +251,7 @@ def test_ticks_for_the_type_of_the_core_replace_the_others():
 )
 def test_clocks_and_scale_apply_to_work_and_overheads(settings, expected):
     model = with_overhead(job("task", [ticks(100)]), interrupt("isr", 10), overhead=AROUND)
-    found = simulate_system(model, Options(duration=100 * MS, settings=Settings(**settings)))
+    found = simulate_system(model, Options(duration=Duration(100 * MS), settings=Settings(**settings)))
     assert microseconds(found["task"].response_time.max) == expected
     # In whole picoseconds, a bound is rounded up.
     worst = microseconds(analyze_system(model, Settings(**settings)).processes["task"].response.worst)

@@ -16,7 +16,7 @@ from amalthea_uros.trace.sinks import EventRecorder
 from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 
 SAMPLE = ROOT / "samples" / "rclc-in-executor.yaml"
 
@@ -43,7 +43,8 @@ def described(tmp_path):
 def executed(system, duration, phases):
     """What the executor executes in each job: the runnables in their order, with the time from the activation to the end of each."""
     recorder = EventRecorder()
-    options = Options(duration=duration, mode=Mode.WORST, settings=Settings(phases=phases), traced=(0, duration))
+    settings = Settings(phases={callback: Duration(time) for callback, time in phases.items()})
+    options = Options(duration=Duration(duration), mode=Mode.WORST, settings=settings, traced=(0, Duration(duration)))
     simulate_system(system, options, [recorder])
     events, jobs = recorder.table, []
     names = [entity.name for entity in events.entities]
@@ -94,8 +95,8 @@ def test_callbacks_wait_for_the_trigger(described):
 def test_a_callback_that_is_not_due_takes_no_part_in_a_chain(described):
     """What the IMU callback writes is used by the timer in the same job or, if that is not due there, 10 ms later."""
     system = described(("min: 150 us, max: 220 us", "min: 150 us, max: 150 us"))
-    phases = {"On_Command": 0, "Control": 10 * MS, "Blink": 0}
-    found = simulate_system(system, Options(duration=SECOND, settings=Settings(phases=phases)))
+    phases = {"On_Command": 0, "Control": "10 ms", "Blink": 0}
+    found = simulate_system(system, Options(duration=Duration(SECOND), settings=Settings(phases=phases)))
     latency = found.chains[0].quantities[ChainQuantity.REDUCED_REACTION_TIME]
     # From the start of On_Imu to the end of Control: 90 us, 150 us and publishing, 25 us and 24 B of 100 ns.
     own = 90 * US + 150 * US + 25 * US + 2400 * US // 1000
@@ -113,7 +114,7 @@ def sample():
 def test_no_bound_is_exceeded(sample, seed, mode):
     """Phases of messages and timers are independent of each other, and random."""
     system, bounds = sample
-    found = simulate_system(system, Options(duration=600 * MS, seed=seed, mode=mode))
+    found = simulate_system(system, Options(duration=Duration(600 * MS), seed=seed, mode=mode))
     for process in bounds.processes:
         response = found[process.name].metrics.get(JobMetric.RESPONSE_TIME)
         assert response is None or process.response.best <= response.min <= response.max <= process.response.worst

@@ -32,6 +32,7 @@ from amalthea_uros.simulate.kernel import jobs
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 OTHER = Proc("other", (ticks(2),), 10, priority=1, scheduler="s1")
 MODES = {
@@ -54,7 +55,7 @@ def loop(comparison):
 
 def refused(model):
     """The finding about what is not simulated; the other process must have been simulated undisturbed."""
-    found = simulate_system(model, Options(duration=95 * US))
+    found = simulate_system(model, Options(duration=Duration(95 * US)))
     assert found.processes["other"].jobs == 10
     return [(each.rule, each.message) for each in found.findings if each.rule == "SIM001"]
 
@@ -199,7 +200,7 @@ def test_a_loop_that_takes_no_time_and_does_not_end_ends_the_run():
         ),
     )
     with patch.object(jobs, "MOST_STEPS", 1000):
-        found = simulate_system(built(Proc("T", body, 10, priority=1), OTHER, **MODES), Options(duration=95 * US))
+        found = simulate_system(built(Proc("T", body, 10, priority=1), OTHER, **MODES), Options(duration=Duration(95 * US)))
     assert [(each.rule, each.message) for each in found.findings] == [
         ("SIM003", "at 21 us, 'T' executes activities forever without taking time; the run ends there")
     ]

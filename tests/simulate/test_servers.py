@@ -74,7 +74,10 @@ def drawn(inside, beside):
 @given(st.sampled_from(FIXED), st.integers(1, 5), st.integers(6, 15), tasks_inside, tasks_beside, st.integers(0, 99))
 def test_budgets_are_kept_and_claims_hold(policy, capacity, period, inside, beside, seed):
     model, duration = system(policy, capacity, period, drawn(inside, beside)), 2000 * US
-    options = (Options(duration=duration, mode=mode, seed=seed, traced=(0, duration)) for mode in (Mode.SAMPLED, Mode.WORST))
+    options = (
+        Options(duration=Duration(duration), mode=mode, seed=seed, traced=(0, Duration(duration)))
+        for mode in (Mode.SAMPLED, Mode.WORST)
+    )
     runs = [record(model, each) for each in options]
     assert not any(run.program.left_out for run in runs)
     for process in analyze_system(model).processes:
@@ -96,7 +99,7 @@ def test_a_bandwidth_server_disturbs_others_no_more_than_its_bandwidth(capacity,
     model = system(
         Policy.CONSTANT_BANDWIDTH_SERVER, capacity, period, [*drawn(inside, []), beside], Policy.EARLIEST_DEADLINE_FIRST
     )
-    run = record(model, Options(duration=2000 * US, seed=seed))
+    run = record(model, Options(duration=Duration(2000 * US), seed=seed))
     assert not run.program.left_out
     jobs = run.jobs_of("out")
     assert max(end - activation for activation, _, end in jobs) <= 20 * US
@@ -111,13 +114,13 @@ def test_a_bandwidth_server_disturbs_others_no_more_than_its_bandwidth(capacity,
     ],
 )
 def test_a_job_that_needs_two_budgets(policy, ends):
-    run = record(system(policy, 2, 10, [("T", 100, 3, "server", 1)]), Options(duration=90 * US))
+    run = record(system(policy, 2, 10, [("T", 100, 3, "server", 1)]), Options(duration=Duration(90 * US)))
     assert run.jobs_of("T")[0] == (0, 0, ends * US)
 
 
 def test_what_a_sporadic_server_uses_comes_back_a_period_after_it_had_a_budget_again():
     # 0..2 and 10..11 of the first job; what is used from 10 on comes back at 20, not a period after the budget was used up at 2.
     tasks = [("first", 100, 3, "server", 2), ("then", 100, 3, "server", 1)]
-    run = record(system(Policy.SPORADIC_SERVER, 2, 10, tasks), Options(duration=90 * US))
+    run = record(system(Policy.SPORADIC_SERVER, 2, 10, tasks), Options(duration=Duration(90 * US)))
     assert run.jobs_of("first")[0] == (0, 0, 11 * US)
     assert run.jobs_of("then")[0] == (0, 11 * US, 22 * US)

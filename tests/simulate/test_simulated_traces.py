@@ -22,6 +22,7 @@ from amalthea_uros.trace.state_charts import StateCharts, check_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 DURATION = 600 * US
 #: Begins and ends amid jobs and critical sections.
@@ -30,7 +31,9 @@ WINDOWS = [(0, DURATION), *((start * US, 400 * US) for start in every(3, (27, 33
 
 def play(system, duration=DURATION, traced=None, sinks=()):
     recorder = EventRecorder()
-    simulation = simulate_system(system, Options(duration=duration, traced=traced or (0, duration)), [recorder, *sinks])
+    simulation = simulate_system(
+        system, Options(duration=Duration(duration), traced=tuple(map(Duration, traced or (0, duration)))), [recorder, *sinks]
+    )
     return simulation, [recorder.table]
 
 

@@ -133,7 +133,7 @@ MEASURED = (970, 10320, 19978)
 
 def swept(path, sweep):
     """The minimum, the mean and the maximum of the latency over all runs of a sweep, in microseconds."""
-    options, chain = Options(duration=100 * MS), f"factor-to-output.{ChainQuantity.REDUCED_REACTION_TIME}"
+    options, chain = Options(duration=Duration(100 * MS)), f"factor-to-output.{ChainQuantity.REDUCED_REACTION_TIME}"
     rows = simulate_campaign(path, options, sweeps=[parse_sweep(sweep)], workers=1).rows
     lows, means, highs = ([row[f"{chain}.{column}_ps"] for row in rows] for column in ("min", "avg", "max"))
     return min(lows) / US, sum(means) / len(means) / US, max(highs) / US

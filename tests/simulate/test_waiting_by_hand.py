@@ -21,6 +21,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.observed.job_times import JobColumn
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 A_AND_B = (OsEvent(name="a"), OsEvent(name="b"))
 
@@ -287,6 +288,6 @@ def test_latencies_from_the_start_of_a_producer_to_the_end_of_a_consumer(communi
     rival = Proc("rival", (ticks(6),), 20, 5, priority=2, scheduler="s1")
     consumer = Proc("consumer", (ticks(2), access("data", READ, communication), ticks(1)), 20, 5, priority=1, scheduler="s1")
     parts = {"labels": (Label(name="data"),), "events": EVENTS, "chains": (chain("through", "begin", "end"),)}
-    run = simulate_system(built(producer, rival, consumer, **parts), Options(duration=400 * US))
+    run = simulate_system(built(producer, rival, consumer, **parts), Options(duration=Duration(400 * US)))
     found = {quantity.value: latency for quantity, latency in run.chains["through"].quantities.items()}
     assert {name: (found[name].min / US, found[name].max / US) for name in expected} == expected

@@ -12,6 +12,7 @@ from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 from amalthea_uros.validate.system_context import SystemContext
 
 ZERO, NEGATIVE = Counter(prescaler=0), Counter(prescaler=-2, is_phase_known=False)
@@ -22,7 +23,7 @@ ELSEWHERE = Proc("elsewhere", (ticks(1),), 50, priority=1, scheduler="s1")
 
 def verdicts(model):
     """Of all processes, in the analysis, and in the simulation."""
-    simulation = simulate_system(model, Options(duration=500 * US))
+    simulation = simulate_system(model, Options(duration=Duration(500 * US)))
     proved = {each.name: (str(each.verdict), each.reason) for each in analyze_system(model).processes}
     seen = {each.name: (str(each.verdict), each.reason) for each in (*simulation.processes, *simulation.left_out)}
     return proved, seen

@@ -16,7 +16,7 @@ from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 from amalthea_uros.uros.network.classic_bus import BusTransmission, with_bus
 from amalthea_uros.uros.transports.can import CanBus, block_bytes, frames
 
@@ -34,7 +34,7 @@ def test_each_frame_has_a_header_byte_and_the_last_one_may_be_padded(length):
 def test_the_thesis_at_250_kbit_per_second():
     """Section 4.4.2: an XRCE message of n bytes takes ceil(n / 7) frames; with all stuff bits, each takes 135 bits of 4 us."""
     system = describe(SAMPLES / "bodas-test-advanced.yaml").system_with_bus()
-    found = simulate_system(system, Options(duration=2 * SECOND, mode=Mode.WORST))
+    found = simulate_system(system, Options(duration=Duration(2 * SECOND), mode=Mode.WORST))
     # 4 bytes and 12 of headers at 50 Hz.
     assert found["factor_topic_to_Message_Factor"].response_time.max == 3 * 540 * US
     assert float(found.cores["CAN"].load) == 50 * 3 * 540e-6
@@ -45,14 +45,14 @@ def test_the_thesis_at_250_kbit_per_second():
 def test_messages_of_the_thesis_that_create_entities(length, count):
     message = BusTransmission(name="message", frames=block_bytes(length), stimulus=Single(name="once", time=0))
     system = with_bus(System(), CanBus(bit_rate=250_000), [message])
-    found = simulate_system(system, Options(duration=SECOND, mode=Mode.WORST))
+    found = simulate_system(system, Options(duration=Duration(SECOND), mode=Mode.WORST))
     assert found["message"].response_time.max == count * 540 * US
     assert sum(isinstance(each, Execute) for each in system.processes["message"].activities) == count
 
 
 def test_messages_are_queued_as_often_as_the_description_says():
     assembly = describe(SAMPLES / "drive-and-lift.yaml")
-    found = simulate_system(assembly.system_with_bus(), Options(duration=10 * SECOND))
+    found = simulate_system(assembly.system_with_bus(), Options(duration=Duration(10 * SECOND)))
     jobs = {process.name: process.jobs for process in found.processes if process.core == "CAN"}
     assert jobs == {
         "speed_topic_to_Set_Speed": 200,
@@ -81,7 +81,7 @@ def test_a_callback_that_runs_between_messages_does_not_publish_then(author):
               publishers: [{topic: out, message_size: 4 B, reliability: best-effort}]
         """
     )
-    found = simulate_system(assembly.system_with_bus(), Options(duration=SECOND))
+    found = simulate_system(assembly.system_with_bus(), Options(duration=Duration(SECOND)))
     # Its task has a period of 10 ms, so that it runs four times for each message.
     assert (found["Echo"].jobs, found["out_topic_from_Echo"].jobs, found["in_topic_to_Echo"].jobs) == (100, 25, 25)
 
@@ -92,7 +92,7 @@ def test_the_bus_changes_nothing_of_the_application_and_keeps_within_its_bounds(
     whole = assembly.system_with_bus()
     bounds = {process.name: process.response for process in analyze_system(whole).processes}
     for mode in Mode:
-        options = Options(duration=SECOND // 2, mode=mode)
+        options = Options(duration=Duration(SECOND // 2), mode=mode)
         alone, found = (simulate_system(system, options) for system in (assembly.system, whole))
         assert [found[process.name] for process in alone.processes] == list(alone.processes)
         times = {process.name: process.response_time for process in found.processes}
@@ -150,7 +150,7 @@ BOTH_WAYS = """
 )
 def test_identifiers_of_messages_decide_who_is_sent_first(identifiers, order, author):
     system = author.describe(BOTH_WAYS.format(identifiers=identifiers)).system_with_bus()
-    found = simulate_system(system, Options(duration=SECOND, mode=Mode.WORST))
+    found = simulate_system(system, Options(duration=Duration(SECOND), mode=Mode.WORST))
     ends = {process.name[0]: process.response_time.max for process in found.processes if process.core == "CAN"}
     # Each has 14 bytes, so two frames of 135 bits.
     assert ends == {name: place * 270 * US for place, name in enumerate(order, 1)}

@@ -14,6 +14,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.demand.overheads import ASSUMPTION
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 HEAD = """
 amuros: 1
@@ -32,7 +33,7 @@ def runnables(system):
 
 def responses(system):
     """The shortest and the longest response times in microseconds; those of a run are the same."""
-    analysis, run = analyze_system(system), simulate_system(system, Options(duration=200 * MS))
+    analysis, run = analyze_system(system), simulate_system(system, Options(duration=Duration(200 * MS)))
     found = {process.name: (process.bcrt / US, process.wcrt / US) for process in analysis.processes}
     assert found == {
         process.name: (process.response_time.min / US, process.response_time.max / US) for process in run.processes
@@ -60,7 +61,7 @@ tasks:
         analysis = analyze_system(system)
         metric = analysis["Control_Function"].metrics[amuros.JobMetric.RESPONSE_TIME]
         assert (metric.min / US, float(metric.mean) / US, metric.max / US) == (57, 57.65, 70)
-        run = simulate_system(system, Options(duration=20 * MS))
+        run = simulate_system(system, Options(duration=Duration(20 * MS)))
         assert run.processes["Control_Function"].response_time.mean == 57.65 * US
 
     def test_the_chain_takes_what_the_thesis_simulated(self):

@@ -29,6 +29,7 @@ from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.trace.state_charts import check_trace
+from amalthea_uros.units import Duration
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
 from fuzzing.commands import InvariantError, require, require_visible, run
@@ -142,7 +143,7 @@ def agreement(path: Path, _folder: Path) -> None:
         _require_known(analysis)
         require_broken(path, analysis)
         for mode in (SimulationMode.SAMPLED, SimulationMode.WORST):
-            simulation = simulate_files(path, Options(duration=_SHORT, mode=mode)).simulation
+            simulation = simulate_files(path, Options(duration=Duration(_SHORT), mode=mode)).simulation
             found = list(contradictions(analysis, simulation))
             require(not found, f"{mode}: {found[:1]}")
     except AmurosError:

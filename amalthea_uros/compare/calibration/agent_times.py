@@ -13,8 +13,8 @@ from math import ceil, floor
 from amalthea_uros.compare.calibration.options import AgentFit, CalibrationOptions
 from amalthea_uros.compare.calibration.samples import Measured, Samples, samples_of
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
+from amalthea_uros.design.description.assign import Assignment
 from amalthea_uros.design.description.edit import apply_assignments
-from amalthea_uros.design.description.places import Assignment
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import WHOLE_TIME
@@ -24,7 +24,7 @@ from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
-from amalthea_uros.units import MICROSECOND, SECOND, Time, time_text
+from amalthea_uros.units import MICROSECOND, SECOND, Duration, Time, time_text
 from amalthea_uros.uros.described import Described, describe_text
 
 #: Simulated at least, and where the measurement does not say how long it was.
@@ -61,7 +61,7 @@ def _without_agent(fit: AgentFit, text: str, measured: Sequence[Measured]) -> Me
     without = apply_assignments(text, [Assignment(key, _path(key), "0 ms") for key in fit.keys])
     system: System = describe_text(without).assembly.system
     duration: Time = max(_SHORTEST, *(each.source.duration for each in measured))
-    chain = simulate_system(system, Options(duration=duration)).chains[fit.chain]
+    chain = simulate_system(system, Options(duration=Duration(duration))).chains[fit.chain]
     return chain.quantities.get(ChainQuantity.REDUCED_REACTION_TIME) or chain.reason or "the simulation has no round trip"
 
 

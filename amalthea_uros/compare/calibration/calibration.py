@@ -21,8 +21,8 @@ from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.compare.calibration.wire_parts import executed_times
 from amalthea_uros.design.description import text_edits
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.edit import apply_assignments
-from amalthea_uros.design.description.places import Places
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError, WriteError
 from amalthea_uros.measure.series import Measurement
@@ -103,22 +103,22 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
         raise InvalidArgumentError("nothing was measured; give at least one trace")
     mark = _BOM if text.startswith(_BOM) else ""
     before = describe_text(text.removeprefix(_BOM), path)
-    places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
+    built = BuiltObjects(before, text.removeprefix(_BOM))
     measured = [Measured(series, measurement) for measurement in measurements for series in measurement.series]
     executors = (choice.period for choice in before.assembly.choices if choice.task == choice.executor)
     period = next(executors, None)
     found = [
         *calibrated_execution_times(
-            [*with_executor_parts(measured, places, period)], places, options, executed_times(before.assembly.system)
+            [*with_executor_parts(measured, built, period)], built, options, executed_times(before.assembly.system)
         ),
         *calibrated_overheads(measured, before, options),
-        *calibrated_periods(measured, before, places, options),
+        *calibrated_periods(measured, before, built, options),
         *calibrated_agent_times(measured, text.removeprefix(_BOM), before, options),
     ]
     after, found = _edited(text.removeprefix(_BOM), found)
     _check(after, path)
     values = tuple(_placed(value, text.removeprefix(_BOM), after) for value in found)
-    findings = findings_of(path, text, values, measured, before, places, options)
+    findings = findings_of(path, text, values, measured, before, built, options)
     return Calibration(
         path=path,
         sources=tuple(measurement.source for measurement in measurements),

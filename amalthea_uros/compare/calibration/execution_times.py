@@ -14,8 +14,9 @@ from amalthea_uros.compare.calibration.stated_overheads import stated_overhead
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
 from amalthea_uros.compare.calibration.wire_parts import WITHOUT_WAITS, ExecutedTime, without_parts, without_waits
 from amalthea_uros.compare.calibration.wording import percentage
+from amalthea_uros.design.description.assign import Assignment
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.owners import StatedTime
-from amalthea_uros.design.description.places import Assignment, Places
 from amalthea_uros.design.description.text_edits import Path, Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import MeasuredKind
@@ -58,9 +59,9 @@ class Written:
 
 
 def calibrated_execution_times(
-    measured: Sequence[Measured], places: Places, options: CalibrationOptions, executed: Mapping[str, ExecutedTime]
+    measured: Sequence[Measured], built: BuiltObjects, options: CalibrationOptions, executed: Mapping[str, ExecutedTime]
 ) -> Iterator[CalibratedValue]:
-    """The measured execution times, by their places in the description.
+    """The measured execution times, by what of the description states them.
 
     Parameters
     ----------
@@ -70,16 +71,16 @@ def calibrated_execution_times(
     with_runnables = {id(each.source) for each in measured if each.series.kind is MeasuredKind.RUNNABLE}
     for each in _one_per_object(without_waits(measured, executed)):
         known = executed.get(each.series.name)
-        if not places.knows(each.series.name):
+        if not built.knows(each.series.name):
             continue
         try:
-            stated = places.execution_time(each.series.name)
+            stated = built.execution_time(each.series.name)
         except InvalidArgumentError as error:
             if each.series.kind is not MeasuredKind.PROCESS or id(each.source) not in with_runnables:
                 target = f"{each.series.name}.execution_time"
                 yield calibrated(target, samples_of([each], options.judge_on), Outcome.NOT_WRITTEN, str(error))
             continue
-        overhead = _overhead(each, places)
+        overhead = _overhead(each, built)
         if overhead is None:
             reason = "its overhead varies and is part of the measured times; subtract that of an empty job with --empty"
             yield calibrated(
@@ -100,13 +101,13 @@ def calibrated_execution_times(
         yield _calibrated(stated_time, _purest(group), options)
 
 
-def _overhead(measured: Measured, places: Places) -> Time | None:
+def _overhead(measured: Measured, built: BuiltObjects) -> Time | None:
     """The stated overhead that is part of measured times: of jobs as a whole, without a baseline; None if it varies."""
-    series, executor = measured.series, places.description.middleware.stated_executors[0].name
+    series, executor = measured.series, built.description.middleware.stated_executors[0].name
     if series.kind is MeasuredKind.RUNNABLE or series.baseline is not None:
         return 0
     process = executor if series.name == f"{executor}_Spin" else series.name
-    lower, upper = stated_overhead(process, places.description) or (0, 0)
+    lower, upper = stated_overhead(process, built.description) or (0, 0)
     return lower if lower == upper else None
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from amalthea_uros.compare.calibration.samples import Measured
-from amalthea_uros.design.description.places import Places
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.measure.series import MeasuredKind, statistics_of
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time
@@ -21,19 +21,19 @@ from amalthea_uros.units import Time
 _MOST_OTHERS = 2
 
 
-def with_executor_parts(measured: Sequence[Measured], places: Places, period: Time | None) -> Iterator[Measured]:
+def with_executor_parts(measured: Sequence[Measured], built: BuiltObjects, period: Time | None) -> Iterator[Measured]:
     """The series, those of the executor as one for its base and one for its messages if they can be separated.
 
     Parameters
     ----------
     period : of the executor
     """
-    executor = places.description.middleware.stated_executors[0]
+    executor = built.description.middleware.stated_executors[0]
     cost = executor.execution_time
-    incoming = [callback for callback in places.callbacks if callback.incoming is not None]
+    incoming = [callback for callback in built.callbacks if callback.incoming is not None]
     parts = {"per_timer", "per_handle", "per_ready_callback", "per_message"} & cost.model_fields_set
     has_two_parts = parts == {"per_message"} and not cost.per_message.per_byte and len(incoming) == 1
-    is_alone = not any(callback.in_executor for callback in places.callbacks)
+    is_alone = not any(callback.in_executor for callback in built.callbacks)
     for each in measured:
         series = each.series
         is_executor = (series.name, series.quantity) == (executor.name, JobMetric.NET_EXECUTION_TIME)

@@ -11,7 +11,7 @@ from amalthea_uros.compare.calibration.options import CalibrationOptions, Form
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.compare.calibration.wording import statistics_text
-from amalthea_uros.design.description.places import Places
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.names import listed
@@ -25,7 +25,7 @@ def findings_of(
     values: Sequence[CalibratedValue],
     measured: Sequence[Measured],
     description: Described,
-    places: Places,
+    built: BuiltObjects,
     options: CalibrationOptions,
 ) -> Iterator[Finding]:
     """What has to be said about a calibration."""
@@ -46,20 +46,20 @@ def findings_of(
         message = f"gross times, which include preemption by other processes, count as execution times of {listed(gross)}"
         advice = "Trace the processes so that net execution times are known, or measure while nothing preempts them."
         yield Finding("CAL005", Severity.WARNING, message, Location(path), advice)
-    yield from _unknown(path, measured, description, places)
+    yield from _unknown(path, measured, description, built)
     missing = sorted(description.assembly.system.processes.keys() - {name for value in values for name in _names(value)})
     if missing:
         message = f"not measured: {listed(missing)}"
         yield Finding("CAL006", Severity.INFO, message, Location(path))
 
 
-def _unknown(path: Path, measured: Sequence[Measured], description: Described, places: Places) -> Iterator[Finding]:
+def _unknown(path: Path, measured: Sequence[Measured], description: Described, built: BuiltObjects) -> Iterator[Finding]:
     """The objects of the trace that have no place in the description, with what they may be."""
     known, chains = description.assembly.system.processes, description.assembly.system.chains
-    topics = {message.topic for callback in places.callbacks for message in (callback.incoming, *callback.outgoing) if message}
+    topics = {message.topic for callback in built.callbacks for message in (callback.incoming, *callback.outgoing) if message}
     names = dict.fromkeys(each.series.name for each in measured if each.series.kind is not MeasuredKind.CHAIN)
     for name in names:
-        if not places.knows(name) and name not in known and name not in topics and name not in chains:
+        if not built.knows(name) and name not in known and name not in topics and name not in chains:
             advice = did_you_mean(name, known)
             message = f"the description has no process or function {name!r}, so what was measured of it is not used"
             yield Finding(

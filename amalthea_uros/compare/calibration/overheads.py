@@ -10,7 +10,7 @@ from amalthea_uros.compare.calibration.options import CalibrationOptions
 from amalthea_uros.compare.calibration.samples import Measured, samples_of
 from amalthea_uros.compare.calibration.stated_overheads import stated_overhead, with_overhead
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
-from amalthea_uros.design.description.places import Assignment
+from amalthea_uros.design.description.assign import Assignment
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import time_text
 from amalthea_uros.uros.described import Described

@@ -10,8 +10,8 @@ from amalthea_uros.compare.calibration.options import CalibrationOptions
 from amalthea_uros.compare.calibration.samples import Measured, Samples, samples_of
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.owners import callbacks
-from amalthea_uros.design.description.places import Assignment, Places
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.stimuli import Periodic
@@ -26,16 +26,16 @@ QUANTITIES = (JobMetric.ACTIVATE_TO_ACTIVATE, JobMetric.START_TO_START)
 
 
 def calibrated_periods(
-    measured: Sequence[Measured], description: Described, places: Places, options: CalibrationOptions
+    measured: Sequence[Measured], description: Described, built: BuiltObjects, options: CalibrationOptions
 ) -> Iterator[CalibratedValue]:
     """The measured periods of processes, and the intervals of messages that are measured by the names of their topics."""
     topics = {section.topic: path for path, section in callbacks(description.description) if isinstance(section, Subscription)}
     for group in _by_object(measured):
         name, samples = group[0].series.name, samples_of(group, Fraction(0))
         if name in topics:
-            yield from _message(name, samples, topics[name], description, places)
+            yield from _message(name, samples, topics[name], description, built)
         elif name in description.assembly.system.processes:
-            yield from _process(name, samples, description, places, options)
+            yield from _process(name, samples, description, built, options)
 
 
 def _by_object(measured: Sequence[Measured]) -> Iterator[list[Measured]]:
@@ -49,7 +49,7 @@ def _by_object(measured: Sequence[Measured]) -> Iterator[list[Measured]]:
 
 
 def _process(
-    name: str, samples: Samples, description: Described, places: Places, options: CalibrationOptions
+    name: str, samples: Samples, description: Described, built: BuiltObjects, options: CalibrationOptions
 ) -> Iterator[CalibratedValue]:
     target = f"{name}.period"
     present = _period(name, description.assembly.system)
@@ -59,7 +59,7 @@ def _process(
     if grid.fits(present):
         yield calibrated(target, samples, Outcome.CONFIRMED)
         if samples.measured[0].series.quantity == JobMetric.ACTIVATE_TO_ACTIVATE:
-            yield from _process_jitter(name, samples, present, description, places, options)
+            yield from _process_jitter(name, samples, present, description, built, options)
         return
     period = grid.matching(description.assembly.task_periods or [_round(grid.mean)])
     mean = rounded_time_text(grid.mean, Rounding.NEAREST)
@@ -68,7 +68,7 @@ def _process(
         yield calibrated(target, samples, Outcome.NOT_WRITTEN, reason, refuted=("period",))
         return
     try:
-        assignments = places.assignments(Change(name, "period", time_text(period)))
+        assignments = built.assignments(Change(name, "period", time_text(period)))
     except InvalidArgumentError as error:
         yield calibrated(target, samples, Outcome.NOT_WRITTEN, str(error), refuted=("period",))
         return
@@ -77,7 +77,7 @@ def _process(
 
 
 def _process_jitter(
-    name: str, samples: Samples, period: Time, description: Described, places: Places, options: CalibrationOptions
+    name: str, samples: Samples, period: Time, description: Described, built: BuiltObjects, options: CalibrationOptions
 ) -> Iterator[CalibratedValue]:
     """The jitter of activations, where it is more than the clock of the trace can show."""
     jitter, stated = jitter_of(samples, period), _stated_jitter(name, description.assembly.system)
@@ -85,7 +85,7 @@ def _process_jitter(
         return
     target = f"{name}.jitter"
     try:
-        (assignment,) = places.assignments(Change(name, "jitter", time_text(jitter)))
+        (assignment,) = built.assignments(Change(name, "jitter", time_text(jitter)))
     except InvalidArgumentError:
         reason = (
             f"its activations have a jitter of {time_text(jitter)}, which an app.yaml states for tasks with a 'period' only"
@@ -100,11 +100,13 @@ def _process_jitter(
 _NO_BOUND = "a high-water mark, not a bound"
 
 
-def _message(topic: str, samples: Samples, path: Path, description: Described, places: Places) -> Iterator[CalibratedValue]:
+def _message(
+    topic: str, samples: Samples, path: Path, description: Described, built: BuiltObjects
+) -> Iterator[CalibratedValue]:
     """The interval and the jitter of the messages of a topic."""
     section = next(section for place, section in callbacks(description.description) if place == path)
     assert isinstance(section, Subscription)
-    stated = next(each.interval for each in places.callbacks if each.section is section)
+    stated = next(each.interval for each in built.callbacks if each.section is section)
     grid, target = Grid.of(samples), f"{section.name}.arrival_period"
     interval = stated if stated is not None and grid.fits(stated) else grid.matching([_round(grid.mean)])
     if interval is None:
@@ -115,7 +117,7 @@ def _message(topic: str, samples: Samples, path: Path, description: Described, p
     if interval == stated:
         yield calibrated(target, samples, Outcome.CONFIRMED, path=(*path, "interval"))
     else:
-        assignment = Assignment(target, (*path, "interval"), time_text(interval), "rate")
+        (assignment,) = built.assignments(Change(section.name, "arrival_period", time_text(interval)))
         yield calibrated(target, samples, Outcome.WRITTEN, path=assignment.path, refuted=("period",), assignment=assignment)
     jitter = jitter_of(samples, interval)
     if jitter <= max(section.jitter or 0, samples.step):
@@ -131,7 +133,7 @@ def _message(topic: str, samples: Samples, path: Path, description: Described, p
         Outcome.WRITTEN,
         path=(*path, "jitter"),
         refuted=("jitter",),
-        assignment=Assignment(target, (*path, "jitter"), time_text(jitter)),
+        assignment=built.assignments(Change(section.name, "arrival_jitter", time_text(jitter)))[0],
         remark=_NO_BOUND,
     )
 

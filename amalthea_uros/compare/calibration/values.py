@@ -7,7 +7,7 @@ from enum import StrEnum
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.compare.calibration.samples import Samples
 from amalthea_uros.compare.calibration.wording import provenance, sources
-from amalthea_uros.design.description.places import Assignment
+from amalthea_uros.design.description.assign import Assignment
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.measure.series import TimeStatistics
 

@@ -25,6 +25,7 @@ from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.stimuli import Arrivals, Burst, Counter, Periodic, RelativePeriodic, Stimulus, Synthetic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import counters, first_time, known_releases, nominal_period, with_counters
+from amalthea_uros.timing.basics.stated_times import KeptTime
 from amalthea_uros.units import Time, time_text
 
 #: The classes of stimuli that have each key.
@@ -170,7 +171,7 @@ def _show_phase(configuration: Configuration, source: str) -> str:
 
 def _set_phase(configuration: Configuration, source: str, phase: Time) -> Configuration:
     settings = configuration.settings
-    return configuration._replace(settings=replace(settings, phases={**settings.phases, source: phase}))
+    return configuration._replace(settings=replace(settings, phases={**settings.phases, source: KeptTime(phase)}))
 
 
 def _show_period(configuration: Configuration, source: str) -> str:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Protocol, TypeVar
+
+from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.names import listed
 
 
 class NamedKey(Protocol):
@@ -31,6 +34,23 @@ def with_gaps(target: str, keys: Iterable[K]) -> list[tuple[int, K]]:
         return matches
     folded = target.casefold()
     return [(gap, key) for key in every if (gap := _gap(folded, [each.casefold() for each in key.names])) is not None]
+
+
+def only_one(target: str, matches: Sequence[K], what: str, names: Callable[[Sequence[K]], Sequence[str]]) -> K | None:
+    """The only key that a name means, None if there is none.
+
+    Parameters
+    ----------
+    what : has the keys
+    names : the shortest names of keys
+
+    Raises
+    ------
+    InvalidArgumentError : the name means several keys.
+    """
+    if len(matches) > 1:
+        raise InvalidArgumentError(f"{target!r} means several values of the {what}: {listed(names(matches))}; choose one")
+    return matches[0] if matches else None
 
 
 def _gap(target: str, names: Sequence[str]) -> int | None:

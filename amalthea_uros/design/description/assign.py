@@ -9,11 +9,10 @@ from typing import Any
 from amalthea_uros._internal.paths import TEXT
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.key_names import only_one
 from amalthea_uros.design.description.keys import DescriptionKey, Holder, matching, short_name
-from amalthea_uros.design.description.places import Assignment
 from amalthea_uros.design.description.text_edits import Path, Value, has_mapping, value_text
 from amalthea_uros.errors import InvalidArgumentError, ReadError
-from amalthea_uros.names import listed
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.nodes import plain, read_nodes
 from amalthea_uros.spec.section import Shorthand
@@ -36,11 +35,23 @@ def the_key(target: str, keys: Sequence[DescriptionKey]) -> DescriptionKey | Non
     ------
     InvalidArgumentError : the name means several keys.
     """
-    matches = matching(target, keys)
-    if len(matches) > 1:
-        names = listed([short_name(each, keys) for each in matches])
-        raise InvalidArgumentError(f"{target!r} means several values of the description: {names}; choose one")
-    return matches[0] if matches else None
+    return only_one(target, matching(target, keys), "description", lambda several: [short_name(each, keys) for each in several])
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """A value for a key of a description.
+
+    Attributes
+    ----------
+    target : the object and key that the user named
+    instead_of : a key in whose place it is written
+    """
+
+    target: str
+    path: Path
+    value: Value
+    instead_of: str | None = None
 
 
 @dataclass(slots=True)

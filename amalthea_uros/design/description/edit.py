@@ -11,7 +11,8 @@ from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system
 from amalthea_uros.design.description import text_edits
-from amalthea_uros.design.description.places import Assignment, Places
+from amalthea_uros.design.description.assign import Assignment
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.texts import described
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.perf.software import Process
@@ -86,15 +87,6 @@ def arrival_periods(system: System) -> Mapping[str, Time]:
     return {source: period for source, period in found if source and period is not None}
 
 
-#: Changes of what a description states otherwise than a system does; there is no other way to them that could be compared.
-_STRUCTURAL = ("order", "semantics", "callbacks", "runs_in", "runs_when")
-
-
-def is_structural(change: Change) -> bool:
-    """Whether a change is about what a description states otherwise than a system does."""
-    return change.key in _STRUCTURAL
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValueEdit:
     """A value that was written.
@@ -156,13 +148,10 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
     ReadError : something in the text is wrong.
     InvalidArgumentError : a change cannot be stated in a description, or would have other effects than stated.
     """
-    structural = [change for change in changes if is_structural(change)]
-    if structural:
-        return _restructured(text, path, structural, [change for change in changes if not is_structural(change)])
     before = described(text, path)
     expected = changed_system(before.assembly.system, changes, Settings())
-    places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
-    assignments = [assignment for change in changes for assignment in places.assignments(change)]
+    built = BuiltObjects(before, text)
+    assignments = [assignment for change in changes for assignment in built.assignments(change)]
     consequences: list[Assignment] = []
     while True:
         edited = apply_assignments(text, [*assignments, *consequences])
@@ -174,25 +163,12 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
         more = [change for change in _pins(different, expected, found) if change.target not in pinned]
         if not more:
             raise InvalidArgumentError(_other_effect(changes, different, before.assembly.system, expected))
-        consequences += [assignment for change in more for assignment in places.assignments(change)]
+        consequences += [assignment for change in more for assignment in built.assignments(change)]
     edits = [*value_edits(text, edited, assignments), *value_edits(text, edited, consequences, is_consequence=True)]
     every = (*assignments, *consequences)
     return EditedDescription(
         path=path, before=text, text=edited, edits=tuple(edits), assignments=every, kept=tuple(consequences)
     )
-
-
-def _restructured(text: str, path: Path, structural: Sequence[Change], values: Sequence[Change]) -> EditedDescription:
-    """The text with changes for which there is no other way than a description, and then with other values of what it describes."""
-    before = described(text, path)
-    places = Places(before.description, before.platform, before.core_types, before.assembly.priority_scale)
-    assignments = [assignment for change in structural for assignment in places.assignments(change)]
-    rebuilt = apply_assignments(text, assignments)
-    _system(rebuilt, path, structural)
-    edited = edit_description(rebuilt, path, values)
-    edits = (*value_edits(text, edited.text, assignments), *edited.edits)
-    every = (*assignments, *edited.assignments)
-    return EditedDescription(path=path, before=text, text=edited.text, edits=edits, assignments=every, kept=edited.kept)
 
 
 def apply_assignments(text: str, assignments: Iterable[Assignment]) -> str:

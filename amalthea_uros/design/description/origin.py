@@ -11,9 +11,9 @@ from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
 from amalthea_uros.design.changes.timing_changes import Happening, timing_changes
-from amalthea_uros.design.description.assign import Assignments, is_stated_by_parts, the_key
+from amalthea_uros.design.description.assign import Assignment, Assignments, is_stated_by_parts, the_key
+from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of, matching, short_name
-from amalthea_uros.design.description.places import Assignment, Places
 from amalthea_uros.design.description.refusals import refusal
 from amalthea_uros.design.description.text_edits import rendered, value_text, with_value
 from amalthea_uros.design.description.texts import described
@@ -148,15 +148,10 @@ class DescriptionOrigin:
             values.append(Change(name, last, compact(rendered(each.value))))
         return tuple(values)
 
-    def places(self) -> Places:
-        """The keys that state values of objects that are built from the description."""
-        values = described(self.text, self.path)
-        return Places(values.description, values.platform, values.core_types, values.assembly.priority_scale)
-
     def _of_built_object(self, change: Change) -> Sequence[Assignment]:
         """The edits for a value of an object that is built, such as the runnable of a task."""
         try:
-            return self.places().assignments(change)
+            return BuiltObjects(described(self.text, self.path), self.text).assignments(change)
         except InvalidArgumentError as error:
             raise refusal(change, self.keys, self.present.system, error) from None
 

@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.design.changes.key_names import shorter_names, with_gaps
-from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.design.changes.key_names import only_one, shorter_names, with_gaps
 from amalthea_uros.metamodel.classes_common import (
     BigIntegerObject,
     BooleanObject,
@@ -20,7 +19,6 @@ from amalthea_uros.metamodel.classes_common import (
 )
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Model
-from amalthea_uros.names import listed
 from amalthea_uros.xmi.emf.plan import ClassPlan, FeaturePlan, Plans, plans
 
 #: Objects that are one value, not a part with attributes of its own.
@@ -186,11 +184,7 @@ def the_key(target: str, keys: Sequence[ModelKey]) -> ModelKey | None:
     ------
     InvalidArgumentError : the name means several keys.
     """
-    matches = matching(target, keys)
-    if len(matches) > 1:
-        names = listed(list(short_names(matches, keys).values()))
-        raise InvalidArgumentError(f"{target!r} means several values of the model: {names}; choose one")
-    return matches[0] if matches else None
+    return only_one(target, matching(target, keys), "model", lambda several: list(short_names(several, keys).values()))
 
 
 def short_names(some: Sequence[ModelKey], keys: Iterable[ModelKey]) -> dict[ModelKey, str]:

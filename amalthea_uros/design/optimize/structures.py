@@ -7,7 +7,6 @@ from itertools import permutations
 
 from amalthea_uros._internal.records import dataclass, fields
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.description.edit import edit_description, is_structural
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.optimize.designs import RebuiltStructure
 from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
@@ -95,10 +94,8 @@ class DescribedCallbacks:
             if moved.get(callback.name) and getattr(callback.section, "deadline", None) is not None:
                 return f"the deadline of {callback.name!r} has no effect in the executor"
         changes = self._with_order(own, {**inside, **moved})
-        values = [change for change in changes if not is_structural(change)]
-        structural = [change for change in changes if is_structural(change)]
         try:
-            text = edit_description(self.origin.edited(values), self.origin.path, structural).text
+            text = self.origin.edited(changes)
         except InvalidArgumentError as error:
             return str(error)
         rebuilt = describe_text(text, self.origin.path).assembly
@@ -111,7 +108,9 @@ class DescribedCallbacks:
         chosen = next((change.value.split(",") for change in own if change.key == "order"), list(self.executor.order))
         order = [name for name in chosen if inside[name]]
         others = tuple(change for change in own if change.key != "order")
-        return others if order == self.executor.order else (*others, Change(self.executor.name, "order", ",".join(order)))
+        return (
+            others if order == self.executor.order else (*others, Change(self.executor.name, "order", ",".join(order) or "[]"))
+        )
 
 
 def _demands(system: System) -> list[object]:

@@ -29,6 +29,7 @@ from amalthea_uros.simulate.observations import (
 )
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
+from amalthea_uros.timing.basics.stated_times import KeptTime
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import Time, time_text
 
@@ -266,5 +267,7 @@ def _repeated(result: SimulationResult, start: Time, end: Time) -> EventTable:
     from amalthea_uros.trace.sinks import EventRecorder
 
     recorder = EventRecorder()
-    simulate_system(result.system, replace(result.options, duration=end, traced=(start, end)), [recorder])
+    simulate_system(
+        result.system, replace(result.options, duration=KeptTime(end), traced=(KeptTime(start), KeptTime(end))), [recorder]
+    )
     return recorder.table

@@ -48,8 +48,10 @@ def _environment() -> Environment:
 
 
 def _finalized(value: object) -> object:
-    """Text of models without hidden characters, which could pretend to be other text."""
-    return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+    """Text of models without hidden characters, which could pretend to be other text; a number and its sign stay in one line."""
+    if isinstance(value, Markup) or not isinstance(value, str):
+        return value
+    return visible(value).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
 def _file(name: str) -> Markup:

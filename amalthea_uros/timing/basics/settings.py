@@ -28,7 +28,7 @@ class Settings:
 
     Attributes
     ----------
-    frequencies : of cores, instead of those of the system; each a text such as "300 MHz", or a number of hertz
+    frequencies : of cores, instead of those of the system; each a text such as "300 MHz", or a `Fraction` in hertz
     scale : factor on all execution times, like slower clocks
     growth : factor on all worst-case execution times; best cases only decrease, so that the analysis covers all smaller factors
     factors : the same for single processes
@@ -65,7 +65,7 @@ class Settings:
         ) -> None: ...
 
     def __post_init__(self) -> None:
-        if any(isinstance(each, str) for each in self.frequencies.values()):
+        if not all(isinstance(each, Fraction) for each in self.frequencies.values()):
             object.__setattr__(self, "frequencies", {core: _frequency(core, each) for core, each in self.frequencies.items()})
         if self.phases:
             object.__setattr__(self, "phases", {name: kept_time(name, time) for name, time in self.phases.items()})
@@ -86,8 +86,10 @@ class Settings:
 
 
 def _frequency(core: str, value: Frequency | str) -> Frequency:
-    if not isinstance(value, str):
+    if isinstance(value, Fraction):
         return value
+    if not isinstance(value, str):
+        raise InvalidArgumentError(f"{core}: the number {value} has no unit; write a text such as '{value} MHz'")
     try:
         return parse_frequency(value)
     except ValueError as error:

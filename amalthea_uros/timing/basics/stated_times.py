@@ -42,9 +42,15 @@ def stated_time(
     return time
 
 
-def kept_time(what: str, value: TimeLike) -> Time:
-    """Whole picoseconds of a time, or of a whole number of them, as results have; raises as `stated_time` for other numbers."""
-    return value if isinstance(value, int) and not isinstance(value, bool) else stated_time(what, value)
+class KeptTime(int):
+    """Whole picoseconds of a time that was stated with its unit, so that it need not be when an object is copied."""
+
+    __slots__ = ()
+
+
+def kept_time(what: str, value: TimeLike) -> KeptTime:
+    """Whole picoseconds of a time; raises as `stated_time`."""
+    return value if isinstance(value, KeptTime) else KeptTime(stated_time(what, value))
 
 
 def _picoseconds(what: str, value: TimeLike, unit: str | None, rounding: Callable[[Fraction], int], remedy: str) -> Time:

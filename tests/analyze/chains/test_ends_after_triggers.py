@@ -17,6 +17,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 
 def triggering(cores=("core",), *, constraints=()):
@@ -45,7 +46,7 @@ def test_what_cannot_preempt_the_job_responds_after_its_end():
 
 def test_the_simulation_agrees_with_the_analysis():
     built = triggering()
-    (chain,) = simulate_system(built, Options(duration=10 * MS)).chains
+    (chain,) = simulate_system(built, Options(duration=Duration(10 * MS))).chains
     reaction = chain.quantities[ChainQuantity.REDUCED_REACTION_TIME]
     assert reaction.min == reaction.max == 90 * US
     _, values, _, _ = evaluate(built)
@@ -97,7 +98,7 @@ def test_a_trigger_without_effect_waits_for_the_next_one_with_an_effect(place, l
     stimulus = InterProcess(name="R", counter=counter if place == "stimulus" else None)
     tasks = [("W", 100, [ticks(3), trigger]), ("R", None, [ticks(2)])]
     built = system(tasks, (at("W", START), at("R", END)), stimuli=(stimulus,))
-    (chain,) = simulate_system(built, Options(duration=10 * MS)).chains
+    (chain,) = simulate_system(built, Options(duration=Duration(10 * MS))).chains
     assert chain.quantities[ChainQuantity.REDUCED_REACTION_TIME].max == longest * US
     _, values, _, _ = evaluate(built)
     assert values["min_first_to_first"] <= 5

@@ -14,6 +14,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 
 def reaction(analysis):
@@ -50,7 +51,7 @@ def test_a_read_may_come_just_before_a_write_of_the_same_instant(writer):
 
 
 def test_what_a_simulation_observes_of_such_a_chain_is_within_the_bound():
-    observed = simulate_system(built(WRITER, READER), Options(duration=400 * US)).chains["flow"]
+    observed = simulate_system(built(WRITER, READER), Options(duration=Duration(400 * US))).chains["flow"]
     assert observed.quantities[ChainQuantity.REDUCED_REACTION_TIME].max == 40 * US
 
 
@@ -93,7 +94,7 @@ def test_no_bound_counts_on_a_response_before_its_stimulus(before_write):
 
 
 def test_no_observed_latency_is_negative():
-    (observed,) = simulate_system(overtaking(ticks(3)), Options(duration=1800 * US)).chains
+    (observed,) = simulate_system(overtaking(ticks(3)), Options(duration=Duration(1800 * US))).chains
     reaction = observed.quantities[ChainQuantity.REDUCED_REACTION_TIME]
     assert (reaction.min, reaction.max) == (26 * US, 56 * US)
     assert observed.quantities[ChainQuantity.REDUCED_DATA_AGE].min >= 0

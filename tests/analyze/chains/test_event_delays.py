@@ -15,6 +15,7 @@ from amalthea_uros.perf.events import ProcessChange, ProcessEvent
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
+from amalthea_uros.units import Duration
 
 CHANGES = (ProcessChange.ACTIVATE, ProcessChange.START, ProcessChange.TERMINATE)
 SOURCE = Proc("S", (ticks(2),), 20, priority=2)
@@ -62,7 +63,7 @@ def test_a_target_that_the_source_does_not_cause_will_do():
     target = Proc("T", (ticks(1),), 10, stimuli=("t",), priority=1, scheduler="s1", task={"activation_limit": 5})
     changes = (ProcessChange.START, ProcessChange.TERMINATE)
     model = built(source, target, changes=changes, upper=15, triggers=("t",))
-    (observed,) = simulate_system(model, Options(duration=1000 * US)).requirements
+    (observed,) = simulate_system(model, Options(duration=Duration(1000 * US))).requirements
     assert str(observed.verdict) == "observed_ok"
     assert verdicts(analyze_system(model)) == {"upper": "unknown"}
 
@@ -84,7 +85,7 @@ def test_delays_are_those_of_a_simulation(periods, offsets, demands, changes, lo
         )
     )
     model = built(source, target, changes=changes, upper=60, **({"lower": lower} if lower else {}))
-    analysis, observed = analyze_system(model), simulate_system(model, Options(duration=400 * US))
+    analysis, observed = analyze_system(model), simulate_system(model, Options(duration=Duration(400 * US)))
     proved = next(item for item in analysis.requirements if item.is_upper)
     seen = next(item for item in observed.requirements if item.is_upper)
     assert proved.lower == proved.upper == seen.value

@@ -23,6 +23,7 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import NANOSECOND as NS
+from amalthea_uros.units import Duration
 
 #: The minimum time between two activations of the process that comes at any time.
 RARELY = 40
@@ -121,7 +122,7 @@ def test_the_controller_answers_as_late_as_it_can_at_least():
     assert analysis.chains["factor-to-output"].best == 1_014_500 * NS
     assert analysis["Control_Function"].response.best == 16_500 * NS
     for seed in range(12):
-        run = simulate_system(description.system, Options(duration=100_000 * US, seed=seed))
+        run = simulate_system(description.system, Options(duration=Duration(100_000 * US), seed=seed))
         assert run.chains["factor-to-output"].quantities[ChainQuantity.FIRST_TO_FIRST].min >= 1_014_500 * NS
 
 

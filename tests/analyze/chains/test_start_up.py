@@ -15,6 +15,7 @@ from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
+from amalthea_uros.units import Duration
 
 
 def first_alone(offset, period=14):
@@ -36,7 +37,7 @@ def test_the_first_job_waits_for_a_later_one(offset, reaction):
     built = first_alone(offset)
     _chain, values, claims, _ = evaluate(built)
     assert (values["max_reduced_reaction_time"], claims) == (reaction, {"exact"})
-    (observed,) = simulate_system(built, Options(duration=1 * MS)).chains
+    (observed,) = simulate_system(built, Options(duration=Duration(1 * MS))).chains
     assert observed.quantities[ChainQuantity.REDUCED_REACTION_TIME].max == reaction * US
 
 
@@ -45,7 +46,7 @@ def test_inputs_count_from_the_start_on(offset):
     # The first input reaches the end later than each of the others, whether it is the last one until then or not.
     built = first_alone(offset)
     _chain, values, _, _ = evaluate(built)
-    (observed,) = simulate_system(built, Options(duration=1 * MS)).chains
+    (observed,) = simulate_system(built, Options(duration=Duration(1 * MS))).chains
     for name in ("last_to_first", "first_to_last"):
         assert values[f"max_{name}"] * US == observed.quantities[ChainQuantity(name)].max
 

@@ -23,7 +23,7 @@ from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
-from amalthea_uros.units import MILLISECOND
+from amalthea_uros.units import MILLISECOND, Duration
 from amalthea_uros.uros.described import describe_content
 
 DURATION = 500 * MILLISECOND
@@ -75,8 +75,8 @@ def false_claims(
 def runs_of(duration: int, seeds: Iterable[int]) -> list[Options]:
     """With the least of everything, the greatest of everything, and with seeds."""
     modes = SimulationMode.BEST, SimulationMode.WORST
-    sampled = (Options(duration=duration, seed=seed) for seed in seeds)
-    return [*(Options(duration=duration, mode=mode) for mode in modes), *sampled]
+    sampled = (Options(duration=Duration(duration), seed=seed) for seed in seeds)
+    return [*(Options(duration=Duration(duration), mode=mode) for mode in modes), *sampled]
 
 
 #: The runs of an application by default.

@@ -26,6 +26,7 @@ from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.timing.response import Claim
+from amalthea_uros.units import Duration
 
 #: How many readings confirm a suspicion.
 MANY_VARIANTS = 64
@@ -96,7 +97,7 @@ def false_claims(model: RandomModel, tally: Tally | None = None, most: int = MOS
 def falsely_missed(path: Path, facts: Facts) -> list[str]:
     """Limits that all plays keep, and a simulation of the same time does not."""
     try:
-        simulation = simulate_files(path, Options(duration=_duration(facts), seed=1, mode=Mode.WORST)).simulation
+        simulation = simulate_files(path, Options(duration=Duration(_duration(facts)), seed=1, mode=Mode.WORST)).simulation
     except AmurosError:
         return []
     by_name = {limit.name: limit for limit in loose_limits_of(facts)}
@@ -122,7 +123,7 @@ def wrong_answers(
     found = [*refuted(analysis, facts), *falsely_met(analysis, limits, tally)]
     for mode, seed in RUNS:
         try:
-            options = Options(duration=_duration(facts), seed=seed, mode=mode)
+            options = Options(duration=Duration(_duration(facts)), seed=seed, mode=mode)
             simulation = simulate_files(path, options).simulation
         except AmurosError:
             continue

@@ -6,7 +6,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.options import SimulationMode as Mode
 from amalthea_uros.simulate.runs.run import simulate_system
-from amalthea_uros.units import MILLISECOND, SECOND
+from amalthea_uros.units import MILLISECOND, SECOND, Duration
 
 APP = """
 amuros: 1
@@ -69,7 +69,7 @@ def test_a_reliable_publisher_in_a_bare_loop_has_bounds_that_contain_what_is_sim
     analysis = analyze_system(system)
     (executor,) = analysis.executors
     for mode in (Mode.WORST, Mode.SAMPLED):
-        found = simulate_system(system, Options(duration=2 * SECOND, mode=mode))
+        found = simulate_system(system, Options(duration=Duration(2 * SECOND), mode=mode))
         for handle in found.executors["executor"].handles:
             response = executor.handles[handle.name].response
             assert response.best <= handle.response_time.min <= handle.response_time.max <= response.worst

@@ -9,7 +9,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MICROSECOND as US
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 
 TEXT = """
 amuros: 1
@@ -37,7 +37,11 @@ def trip(system):
 
 
 def simulated(system):
-    return simulate_system(system, Options(duration=SECOND)).chains["trip"].quantities[ChainQuantity.REDUCED_REACTION_TIME]
+    return (
+        simulate_system(system, Options(duration=Duration(SECOND)))
+        .chains["trip"]
+        .quantities[ChainQuantity.REDUCED_REACTION_TIME]
+    )
 
 
 @pytest.mark.parametrize(
@@ -70,10 +74,10 @@ def test_assumptions_about_times_survive_a_model_and_are_those_of_each_result(au
     again = extract(build_model(system)).system
     assert again.network == system.network
     assert sentence in analyze_system(again).assumptions
-    assert sentence in simulate_system(again, Options(duration=SECOND)).assumptions
+    assert sentence in simulate_system(again, Options(duration=Duration(SECOND))).assumptions
     assert (
         "where only the mean of a time in the agent is known, every message takes it"
-        in simulate_system(again, Options(duration=SECOND)).assumptions
+        in simulate_system(again, Options(duration=Duration(SECOND))).assumptions
     )
 
 
@@ -97,7 +101,7 @@ def test_a_sender_waits_for_an_acknowledgement_as_long_as_the_mean(author):
         text = TEXT.replace("topic: pong, message_size: 8 B, reliability: best-effort", "topic: pong, message_size: 8 B")
         agent = f"to_controller: 0 ms, to_host: 0 ms, acknowledgement: {time}"
         system = author.describe(text.format(agent=agent)).system
-        (executor,) = simulate_system(system, Options(duration=SECOND)).executors
+        (executor,) = simulate_system(system, Options(duration=Duration(SECOND))).executors
         return executor.handles["Echo"].response_time
 
     assert calls("{mean: 3 ms}") == calls("3 ms")

@@ -11,7 +11,7 @@ from amalthea_uros.perf.network import Direction, Purpose, WireKind
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MICROSECOND as US
-from amalthea_uros.units import SECOND
+from amalthea_uros.units import SECOND, Duration
 
 APP = """
     amuros: 1
@@ -67,7 +67,7 @@ def test_no_message_takes_longer_than_its_bound(kind, executor, author):
     bounds = analyze_system(system).processes
     names = [*system.transmissions, *(isr.name for isr in system.software.isrs)]
     for mode in (Mode.WORST, Mode.SAMPLED):
-        found = simulate_system(system, Options(duration=SECOND, mode=mode))
+        found = simulate_system(system, Options(duration=Duration(SECOND), mode=mode))
         assert all(found[name].jobs for name in names if not name.startswith("heartbeat"))
         for name in names:
             response = bounds[name].response
@@ -101,7 +101,7 @@ def test_what_is_queued_on_a_serial_line(author):
 
 def test_each_frame_has_an_interrupt_and_each_message_a_round(author):
     text = app(TRANSPORTS[WireKind.SERIAL], "loop: {spin: 1 s}")
-    found = simulate_system(author.describe(text).system, Options(duration=10 * SECOND, mode=Mode.WORST))
+    found = simulate_system(author.describe(text).system, Options(duration=Duration(10 * SECOND), mode=Mode.WORST))
     messages = found["cmd_vel_topic_to_Drive"].jobs
     assert found["Receive"].jobs == messages
     to_controller = "odom_topic_from_Drive_acknowledgement", "heartbeat_of_agent", "heartbeat_of_client_acknowledgement"
@@ -112,7 +112,7 @@ def test_each_frame_has_an_interrupt_and_each_message_a_round(author):
     assert calls_of(found) == pytest.approx([500, 100], abs=2)
     system = author.describe(app("serial: {baud_rate: 921600}", "loop: {spin: 1 s}")).system
     assert not system.software.isrs
-    found = simulate_system(system, Options(duration=10 * SECOND, mode=Mode.WORST))
+    found = simulate_system(system, Options(duration=Duration(10 * SECOND), mode=Mode.WORST))
     assert calls_of(found) == pytest.approx([500, 100], abs=2)
 
 
@@ -222,7 +222,7 @@ def test_frames_of_a_database(author):
     assert [message for message, _ in warnings(assembly, "UR133")] == [
         "'Diagnosis' has no cycle time, so that the waiting of all messages of lower priority is unknown"
     ]
-    found = simulate_system(assembly.system, Options(duration=SECOND, mode=Mode.WORST))
+    found = simulate_system(assembly.system, Options(duration=Duration(SECOND), mode=Mode.WORST))
     assert (found["Brake"].jobs, found["Brake"].response_time.min >= 270 * US) == (100, True)
     missing = text.replace("car.dbc", "lorry.dbc")
     assert [(rule, "not found" in message) for _, rule, message in author.findings(missing)] == [("APP001", True)]

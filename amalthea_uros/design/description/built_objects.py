@@ -1,71 +1,67 @@
-"""The keys of an `app.yaml` that state what `OBJECT.KEY=VALUE` changes."""
+"""The values of a description that decide about objects that are built from it, such as the runnable of a callback."""
 
 from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.description.assign import Assignment, Assignments
+from amalthea_uros.design.description.keys import DescriptionKey, keys_of
 from amalthea_uros.design.description.owners import Owner, OwnerKind, StatedTime, executors, owners
-from amalthea_uros.design.description.text_edits import Path, Value
+from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
-from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer
+from amalthea_uros.spec.application import CallbackSection, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.processes import ProcessSection
 from amalthea_uros.spec.transports import Interrupt
-from amalthea_uros.units import SECOND, Time, data_size_text, parse_time, time_text
+from amalthea_uros.units import Time, data_size_text, parse_time, time_text
 from amalthea_uros.uros.application import callbacks as uros
 from amalthea_uros.uros.application.messages import Message
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.executor_runnables import message_cost, timer_count
-from amalthea_uros.uros.assembly.planned import PriorityScale
+from amalthea_uros.uros.described import Described
 
 _TICKS = re.compile(r"\d+\s*ticks?", re.ASCII)
 #: Sections under other names than their own.
 _PARTS = (OwnerKind.TAKE, OwnerKind.NOTIFY)
 _WHOLE = re.compile(r"-?\d+", re.ASCII)
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment:
-    """A value for a key of a description.
-
-    Attributes
-    ----------
-    target : the object and key that the user named
-    instead_of : a key in whose place it is written
-    """
-
-    target: str
-    path: Path
-    value: Value
-    instead_of: str | None = None
+#: Runnables: of a section, they have the execution time alone.
+_RUNNABLES = (OwnerKind.SPIN, OwnerKind.TAKE, OwnerKind.NOTIFY, OwnerKind.BODY, OwnerKind.RUNNABLE)
+#: What sections call otherwise than systems do; by these names they have something else.
+_OTHER_NAMES: Mapping[OwnerKind, Mapping[str, str]] = {
+    OwnerKind.MESSAGE_CALLBACK: {"period": "task_period", "arrival_period": "interval", "arrival_jitter": "jitter"},
+}
+#: The processes whose priorities have the order of the operating system, not that of interrupts.
+_SCHEDULED = (OwnerKind.EXECUTOR, OwnerKind.TIMER, OwnerKind.MESSAGE_CALLBACK, OwnerKind.TASK)
 
 
 @dataclass(frozen=True)
-class Places:
-    """Finds the keys of changes in a description.
+class BuiltObjects:
+    """Finds what states the values of processes, runnables and labels.
 
     Attributes
     ----------
-    platform : the name of the hardware in execution times
-    core_types : by core
-    scale : what priorities of tasks mean in the description
+    values : what is built from the description
+    text : of the description
     """
 
-    description: Description
-    platform: str | None
-    core_types: Mapping[str, str]
-    scale: PriorityScale
+    values: Described
+    text: str
 
-    def assignments(self, change: Change) -> list[Assignment]:
-        """What has to be written for a change.
+    @property
+    def description(self) -> Description:
+        """The description as it is written."""
+        return self.values.description
+
+    def assignments(self, change: Change) -> Sequence[Assignment]:
+        """The edits for a change.
 
         Raises
         ------
@@ -73,13 +69,78 @@ class Places:
         """
         if change.key == "memory":
             return list(self._memory(change))
-        found = [owner for owner in self._owners(change.object) if change.key in _KEYS[owner.kind]]
-        if not found:
+        holders = [owner for owner in self._owners(change.object) if self._has(owner, change.key)]
+        if not holders:
             raise InvalidArgumentError(self._refusal(change))
+        collected = Assignments(self.text, {})
         try:
-            return [assignment for owner in found for assignment in _KEYS[owner.kind][change.key](self, owner, change)]
+            for owner in holders:
+                self._add(collected, owner, change)
         except ValueError as error:
             raise InvalidArgumentError(f"{change}: {error}") from None
+        return collected.every
+
+    def _add(self, collected: Assignments, owner: Owner, change: Change) -> None:
+        if change.key == "execution_time":
+            stated = self._execution_time(owner)
+            written = stated.bounds(*_execution_time_ends(change.value))
+            collected.written[stated.path] = Assignment(change.target, stated.path, written)
+            return
+        change = replace(change, value=self._number(owner, change))
+        for path in self._paths(owner, change):
+            if path in self._keys_by_path:
+                collected.add(self._keys_by_path[path], change)
+            else:  # a part of what is merged or shared, so that the edit is refused with the reason
+                collected.written[path] = Assignment(change.target, path, change.value)
+
+    def _has(self, owner: Owner, key: str) -> bool:
+        """Whether a section states a value that a system calls so."""
+        if key == "execution_time":
+            return True
+        names = _OTHER_NAMES.get(owner.kind, {})
+        if owner.kind in _RUNNABLES or key in names.values():
+            return False
+        return names.get(key, key) in type(owner.section).model_fields
+
+    def _paths(self, owner: Owner, change: Change) -> Iterator[Path]:
+        """Where a value is in the text; nowhere if messages come as often as the description says."""
+        section, path = owner.section, owner.path
+        if change.key == "arrival_period" and parse_time(change.value) in (
+            each.interval for each in self.callbacks if each.section is section
+        ):
+            return
+        if change.key == "period" and isinstance(section, Timer):
+            yield from self._timer_period(owner, change)
+        elif change.key == "period" and isinstance(section, ProcessSection):
+            activation = next((key for key in ("period", "burst", "times") if getattr(section, key) is not None), None)
+            if activation is None:
+                raise ValueError(f"{owner.name!r} is not activated periodically")
+            yield (*path, "period") if activation == "period" else (*path, activation, "period")
+        else:
+            yield (*path, _OTHER_NAMES.get(owner.kind, {}).get(change.key, change.key))
+
+    def _timer_period(self, owner: Owner, change: Change) -> Iterator[Path]:
+        """A timer is due as often as its task is activated, unless the description says something else."""
+        section, available = owner.section, self.description.middleware.task_periods
+        assert isinstance(section, Timer)
+        if available and parse_time(change.value) not in available:
+            raise ValueError(f"{time_text(parse_time(change.value))} is not one of 'task_periods'")
+        if section.task_period is not None:
+            yield (*owner.path, "task_period")
+        if section.task_period is None or section.task_period == section.period:
+            yield (*owner.path, "period")
+
+    def _number(self, owner: Owner, change: Change) -> str:
+        """The value as the description writes it: priorities as the operating system counts them."""
+        if change.key != "priority":
+            return change.value
+        if not _WHOLE.fullmatch(change.value):
+            raise ValueError(f"{change.value!r} is not a whole number such as 2")
+        return str(self.values.assembly.priority_scale.number(int(change.value))) if owner.kind in _SCHEDULED else change.value
+
+    @cached_property
+    def _keys_by_path(self) -> Mapping[Path, DescriptionKey]:
+        return {key.path: key for key in keys_of(self.values.whole, self.text)}
 
     def execution_time(self, name: str) -> list[StatedTime]:
         """Where the execution time of an object is stated; several places if several processes execute it.
@@ -88,10 +149,10 @@ class Places:
         ------
         InvalidArgumentError : it has none, or its parts are stated one by one.
         """
-        found = [owner for owner in self._owners(name) if "execution_time" in _KEYS[owner.kind]]
-        if not found:
+        holders = self._owners(name)
+        if not holders:
             raise InvalidArgumentError(self._refusal(Change(name, "execution_time", "")))
-        return [self._execution_time(owner) for owner in found]
+        return [self._execution_time(owner) for owner in holders]
 
     def knows(self, name: str) -> bool:
         """Whether the description has an object of a name."""
@@ -131,8 +192,7 @@ class Places:
         kinds = dict.fromkeys(owner.kind for owner in self._owners(change.object))
         if not kinds:
             require("object of the description", [change.object], dict.fromkeys(o.name for o in owners(self.description)))
-        keys = ", ".join(dict.fromkeys(key for kind in kinds for key in _KEYS[kind]))
-        return f"{change}: an app.yaml has no {change.key!r} for the {' or '.join(kinds)} {change.object!r}; it has {keys}"
+        return f"{change}: an app.yaml has no {change.key!r} for the {' or '.join(kinds)} {change.object!r}"
 
     def _execution_time(self, owner: Owner) -> StatedTime:
         section, path = owner.section, (*owner.path, "execution_time")
@@ -202,19 +262,20 @@ class Places:
         """The value of an execution time for this hardware."""
         assert time.on is not None
         core = str(getattr(owner.section, "core", None))
-        types = [self.core_types[core]] if core in self.core_types else list(dict.fromkeys(self.core_types.values()))
-        named = [name for name in (*types, self.platform) if name in time.on]
+        by_core = self.values.core_types
+        types = [by_core[core]] if core in by_core else list(dict.fromkeys(by_core.values()))
+        named = [name for name in (*types, self.values.platform) if name in time.on]
         if len(named) > 1:
             raise InvalidArgumentError(
                 f"the execution time of {owner.name!r} depends on the core; change it in the description"
             )
         # The default is also that of other hardware, so this one gets a value of its own.
-        name = named[0] if named else self.platform or "default"
+        name = named[0] if named else self.values.platform or "default"
         assert name is not None
         return (*path, "on", name), time.on.get(name, time.on.get("default"))
 
     def _publishing(self, section: CallbackSection) -> Time:
-        """What publishing adds to the execution time of a callback."""
+        """The part of publishing in the execution time of a callback."""
         sent = self._outgoing.get(id(section), ())
         publish = self.description.middleware.publish
         return _constant((part for message in sent for part in message_cost(publish, message.size)), section.name)
@@ -248,123 +309,9 @@ def _constant(parts: Iterable[ExecutionTimeSection | Time | None], name: str) ->
     return total
 
 
-_Write = Callable[[Places, Owner, Change], Iterable[Assignment]]
-
-
-def _single(convert: Callable[[str], Value], key: str | None = None, instead_of: str | None = None) -> _Write:
-    """The key of a section that states a change."""
-
-    def write(_places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
-        yield Assignment(change.target, (*owner.path, key or change.key), convert(change.value), instead_of)
-
-    return write
-
-
-def _time(text: str) -> str:
-    return time_text(parse_time(text))
-
-
-def _whole(text: str) -> int:
-    if not _WHOLE.fullmatch(text):
-        raise ValueError(f"{text!r} is not a whole number such as 2")
-    return int(text)
-
-
-def _word(text: str) -> str:
-    return text
-
-
-def _write_priority(places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
-    yield Assignment(change.target, (*owner.path, "priority"), places.scale.number(_whole(change.value)))
-
-
-def _names(text: str) -> list[str]:
-    return [name for name in map(str.strip, text.split(",")) if name]
-
-
 def _execution_time_ends(text: str) -> tuple[Time, Time]:
     """An execution time such as "12us" or "2us..4us"."""
     if _TICKS.search(text):
         raise ValueError("an app.yaml states execution times as times; write it as one, e.g. '12 us'")
     lower, separator, upper = text.partition("..")
     return parse_time(lower), parse_time(upper if separator else lower)
-
-
-def _write_execution_time(places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
-    stated = places._execution_time(owner)
-    yield Assignment(change.target, stated.path, stated.bounds(*_execution_time_ends(change.value)))
-
-
-def _write_arrival_period(_places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
-    """The interval of messages; it is left as it is if it has the value."""
-    section = owner.section
-    assert isinstance(section, MessageCallback)
-    stated = section.interval or (SECOND / section.rate if section.rate else None)
-    if stated != parse_time(change.value):
-        yield Assignment(change.target, (*owner.path, "interval"), _time(change.value), "rate")
-
-
-def _write_timer_period(places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
-    """A timer is due as often as its task is activated, unless the description says something else."""
-    section, available = owner.section, places.description.middleware.task_periods
-    assert isinstance(section, Timer)
-    if available and parse_time(change.value) not in available:
-        raise ValueError(f"{_time(change.value)} is not one of 'task_periods'")
-    if section.task_period is not None:
-        yield Assignment(change.target, (*owner.path, "task_period"), _time(change.value))
-    if section.task_period is None or section.task_period == section.period:
-        yield Assignment(change.target, (*owner.path, "period"), _time(change.value), "rate")
-
-
-def _write_process_period(_places: Places, owner: Owner, change: Change) -> Iterable[Assignment]:
-    section = owner.section
-    assert isinstance(section, ProcessSection)
-    for key in ("period", "burst", "times"):
-        if getattr(section, key) is not None:
-            path = (*owner.path, key) if key == "period" else (*owner.path, key, "period")
-            yield Assignment(change.target, path, _time(change.value))
-            return
-    raise ValueError(f"{owner.name!r} is not activated periodically")
-
-
-_SHARED: dict[str, _Write] = {
-    "offset": _single(_time),
-    "priority": _write_priority,
-    "core": _single(_word),
-    "deadline": _single(_time),
-    "execution_time": _write_execution_time,
-}
-_CALLBACK: dict[str, _Write] = {
-    **_SHARED,
-    "phase": _single(_time),
-    "runs_in": _single(_word),
-    "runs_when": _single(_word),
-}
-_PROCESS: dict[str, _Write] = {**_SHARED, "period": _write_process_period, "jitter": _single(_time)}
-_ONLY_EXECUTION_TIME: dict[str, _Write] = {"execution_time": _write_execution_time}
-
-#: The keys of `OBJECT.KEY=VALUE` that a description can state, by the kind of the object.
-_KEYS: Mapping[OwnerKind, Mapping[str, _Write]] = {
-    OwnerKind.EXECUTOR: {
-        **_SHARED,
-        "period": _single(_time),
-        "order": _single(_names),
-        "semantics": _single(_word),
-        "callbacks": _single(_word),
-    },
-    OwnerKind.SPIN: _ONLY_EXECUTION_TIME,
-    OwnerKind.TAKE: _ONLY_EXECUTION_TIME,
-    OwnerKind.NOTIFY: _ONLY_EXECUTION_TIME,
-    OwnerKind.TIMER: {**_CALLBACK, "period": _write_timer_period},
-    OwnerKind.MESSAGE_CALLBACK: {
-        **_CALLBACK,
-        "period": _single(_time, "task_period"),
-        "arrival_period": _write_arrival_period,
-        "arrival_jitter": _single(_time, "jitter"),
-    },
-    OwnerKind.BODY: _ONLY_EXECUTION_TIME,
-    OwnerKind.TASK: {**_PROCESS, "preemption": _single(_word), "activation_limit": _single(_whole)},
-    OwnerKind.ISR: {key: write for key, write in _PROCESS.items() if key != "deadline"} | {"priority": _single(_whole)},
-    OwnerKind.RUNNABLE: _ONLY_EXECUTION_TIME,
-    OwnerKind.INTERRUPT: {"execution_time": _write_execution_time, "priority": _single(_whole), "core": _single(_word)},
-}
