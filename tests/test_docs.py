@@ -36,6 +36,7 @@ def samples(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.early
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_examples_of_a_page(page, samples):
     names: dict[str, object] = {}

@@ -102,6 +102,7 @@ def test_a_static_executor_of_jazzy_starves_what_comes_last():
     assert (late, before) == (0, 9)
 
 
+@pytest.mark.early
 def test_machine_code_has_the_same_results(monkeypatch):
     results = []
     for is_compiled in (False, True):

@@ -369,6 +369,7 @@ def test_a_trace_shows_what_is_lost_and_sent_again():
 # Elsewhere.
 
 
+@pytest.mark.early
 def test_machine_code_loses_alike(monkeypatch):
     from amalthea_uros.simulate.kernel import machine_code
 
