@@ -16,8 +16,9 @@ from tempfile import gettempdir
 
 from amalthea_uros.metamodel.element import Element
 
-#: The workers of a run have one folder, that of the process which started them.
-FOLDER = Path(gettempdir(), f"amuros-analyses-{os.getppid() if 'PYTEST_XDIST_WORKER' in os.environ else os.getpid()}")
+_RUN = os.getppid() if "PYTEST_XDIST_WORKER" in os.environ else os.getpid()
+#: The workers of a run have one folder, that of the process which started them, and so have the processes that they start.
+FOLDER = Path(os.environ.setdefault("AMUROS_ANALYSES", str(Path(gettempdir(), f"amuros-analyses-{_RUN}"))))
 
 
 def sharing(original, asked):

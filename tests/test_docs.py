@@ -8,9 +8,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from command import warm_up
+from command import printed
+from command_server import warm_up
 from effort import IS_THOROUGH
-from forked_commands import printed
 from shared_analyses import share
 from support import ROOT
 
