@@ -40,7 +40,7 @@ LINES = {
     "names": 17,
     "perf": 1703,
     "platforms": 0,
-    "report": 8595,
+    "report": 8581,
     "services": 2601,
     "simulate": 8584,
     "source": 2970,
@@ -48,7 +48,7 @@ LINES = {
     "timing": 5626,
     "trace": 5057,
     "units": 206,
-    "uros": 7443,
+    "uros": 7424,
     "validate": 3660,
     "xmi": 8542,
 }
