@@ -6,12 +6,12 @@ python benchmarks/chains.py --repeat 5
 from __future__ import annotations
 
 import argparse
-import time
-from collections.abc import Callable
 from fractions import Fraction
 from importlib.util import find_spec
 from itertools import pairwise
 from random import Random
+
+from response_times import least_time
 
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
@@ -91,16 +91,6 @@ def whole_system(tasks: list[PeriodicTask], chains: list[list[int]]) -> System:
         ),
         events=events.Events(events=tuple(ends), chains=tuple(found)),
     )
-
-
-def least_time(work: Callable[[], object], repeat: int) -> float:
-    """The minimum time of several runs, in milliseconds."""
-    times = []
-    for _ in range(repeat):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return min(times) * 1000
 
 
 def main() -> None:

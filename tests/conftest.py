@@ -51,12 +51,13 @@ def pytest_collection_finish():
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out what a usual run does not try."""
+    """Leave out what a usual run does not try; the first worker begins with what takes long."""
     if not IS_THOROUGH:
         kept = list(sample(items))
         known = set(kept)
         config.hook.pytest_deselected(items=[item for item in items if item not in known])
         items[:] = kept
+    items.sort(key=lambda item: item.get_closest_marker("early") is None)
 
 
 def pytest_unconfigure(config):

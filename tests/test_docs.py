@@ -8,9 +8,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from command import warm_up
+from command import printed
+from command_server import warm_up
 from effort import IS_THOROUGH
-from forked_commands import printed
 from shared_analyses import share
 from support import ROOT
 
@@ -36,6 +36,7 @@ def samples(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.early
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_examples_of_a_page(page, samples):
     names: dict[str, object] = {}

@@ -270,6 +270,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.early
 @pytest.mark.parametrize("section", RUNS)
 def test_a_command_writes_the_fields_of_the_page(section, folder):
     fields = [Field(("amuros",), ("text",)), *rows(section)]

@@ -19,6 +19,7 @@ def read(path):
     return nbformat.read(path, as_version=4)
 
 
+@pytest.mark.early
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_the_outputs_of_a_notebook(path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
@@ -35,6 +36,7 @@ def modules(tmp_path):
     return files
 
 
+@pytest.mark.early
 def test_mypy_accepts_the_code(modules):
     command = [sys.executable, "-m", "mypy", "--strict", *map(str, modules)]
     run = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)

@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.demand import DemandConverter
 
@@ -61,7 +62,7 @@ def period_candidates(middleware: Middleware, executor: ExecutorSection) -> Peri
 
 def violated_rule(callback: Callback, period: Time, wcet: Time, candidates: PeriodCandidates) -> str | None:
     """What is wrong with a task period, to be read after "it is"; None if it satisfies all rules."""
-    is_timer = callback.kind is CallbackKind.TIMER
+    is_timer = callback.kind is HandleKind.TIMER
     what = "timer period" if is_timer else "minimum message interval" if callback.jitter else "message interval"
     due = f"{what} of {time_text(callback.min_interval)}"
     if period > callback.min_interval:
@@ -123,7 +124,7 @@ def _when_it_runs(callback: Callback, period: Time) -> str:
 
 
 def _reason(callback: Callback, candidates: PeriodCandidates) -> str:
-    source = "the timer period of" if callback.kind is CallbackKind.TIMER else "messages every"
+    source = "the timer period of" if callback.kind is HandleKind.TIMER else "messages every"
     reason = f"keeps up with {source} {time_text(callback.nominal_interval)}"
     return f"longest available period that {reason}" if candidates.periods else reason
 

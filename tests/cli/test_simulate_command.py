@@ -378,6 +378,7 @@ def test_the_library_takes_texts_and_systems(run):
         simulate(ADVANCED, "5s", mode="fast")
 
 
+@pytest.mark.early
 def test_processes_give_the_same_table(tmp_path):
     tables = []
     for jobs in (1, 2):

@@ -16,6 +16,8 @@ from support import ROOT
 
 from amalthea_uros.units import MILLISECOND
 
+pytestmark = pytest.mark.early
+
 #: Of which the table in docs/simulation.md is made.
 SAMPLE = range(60)
 RUNS = runs_of(200 * MILLISECOND, [1])

@@ -196,6 +196,7 @@ chains: [{name: rtt, path: [/r, cb, /v]}]
 """
 
 
+@pytest.mark.early
 @pytest.mark.parametrize("sample", ["robot-xrce", "robot-zenoh", "esp32-serial", "two-controllers-drive"])
 def test_machine_code_executes_loops_alike(sample, monkeypatch):
     from amalthea_uros.services.subject import open_system

@@ -129,7 +129,7 @@ def test_nothing_in_a_reservation_exceeds_its_bound(seed):
         thread = HostThread(policy=HostPolicy.DEADLINE, budget=max(1, period * share // 100), period=period, cores=(0,))
         executors.append(replace(each, thread=thread))
     system = replace(system, host=replace(system.host, executors=tuple(executors)))
-    analysis, simulation = analyze_system(system), simulate_system(system, Options(duration=5000, seed=seed))
+    analysis, simulation = analyze_system(system), simulate_system(system, Options(duration=Duration(5000), seed=seed))
     bounds = {handle.name: handle.response.worst for executor in analysis.host for handle in executor.handles}
     assert any(each.calls for each in callbacks_of(simulation))
     for handle in callbacks_of(simulation):
@@ -154,7 +154,7 @@ def test_a_chain_is_followed_through_calls_that_overlap():
         each.topic, before.sends[topic] = topic, 0
     callbacks = [head, *others]
     system = multi_threaded_system_of(callbacks, dict.fromkeys("ABC", ""), {}, [["A", "B", "C"]], 3, RosRelease.FOXY)
-    (chain,) = simulate_system(system, Options(duration=2050, mode=SimulationMode.WORST)).chains
+    (chain,) = simulate_system(system, Options(duration=Duration(2050), mode=SimulationMode.WORST)).chains
     latencies = chain.quantities[ChainQuantity.LAST_TO_LAST]
     # From the start of A to the end of C; the first A is due at 100, and the last C ends at 1900 + 161.
     assert (latencies.min, latencies.max) == (10 + 150 + 1, 10 + 150 + 1)
@@ -171,6 +171,7 @@ def test_a_static_executor_of_jazzy_starves_what_comes_last():
     assert (late, before) == (0, 9)
 
 
+@pytest.mark.early
 def test_machine_code_has_the_same_results(monkeypatch):
     results = []
     for is_compiled in (False, True):
@@ -256,7 +257,7 @@ def test_a_simulation_of_several_threads_is_the_schedule_of_the_player(seed):
     callbacks, groups, sources, paths, threads = random_groups(Random(f"groups {seed}"))
     sources = {topic: (period, 0) for topic, (period, _) in sources.items()}
     system = multi_threaded_system_of(callbacks, groups, sources, paths, threads, RosRelease.FOXY)
-    simulation = simulate_system(system, Options(duration=1501, mode=SimulationMode.WORST))
+    simulation = simulate_system(system, Options(duration=Duration(1501), mode=SimulationMode.WORST))
     due = {each.name: each.period for each in callbacks if each.period}
     outside = {topic: range(0, 1501, period) for topic, (period, _) in sources.items()}
     own, whole = play_groups(Executor(callbacks, groups, threads, False, due), outside, 1501, Fixed())

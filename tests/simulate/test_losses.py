@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from effort import IS_THOROUGH
 from lossy_player import LossyPlayer, losses
-from simulated_calls import as_planned, first_difference
+from simulated_calls import Least, as_planned, first_difference
 from test_whole_way import drawn
 from traces import said
 from whole_player import MS, S
@@ -35,25 +35,6 @@ from amalthea_uros.uros.described import describe_content, describe_text
 BLOCK = 20
 SEEDS = range(4000 if IS_THOROUGH else 60)
 DIRECTIONS = ("to_controller", "to_agent")
-
-
-class Only:
-    """Chooses of spans that are one value, and nothing that may happen."""
-
-    def choice(self, options):
-        return min(options)
-
-    def randint(self, low, high):
-        return low
-
-    def randrange(self, *_):
-        return 0
-
-    def uniform(self, low, high):
-        return low
-
-    def random(self):
-        return 0.9
 
 
 class Run:
@@ -161,7 +142,7 @@ def test_every_call_is_that_of_a_player(block):
         content, plan, drawn_losses = found
         system = describe_content(content).assembly.system
         plan["blocks"] = system.network.wires[0].keeps_sender
-        player = LossyPlayer(plan, Only(), drawn_losses)
+        player = LossyPlayer(plan, Least(), drawn_losses)
         seen = player.play(S)
         run = Run(as_planned(without_polls(system), plan), S * 1000, drawn_losses)
         for handle, responses in run.calls.items():
@@ -371,6 +352,7 @@ def test_a_trace_shows_what_is_lost_and_sent_again():
 # Elsewhere.
 
 
+@pytest.mark.early
 def test_machine_code_loses_alike(monkeypatch):
     from amalthea_uros.simulate.kernel import machine_code
 

@@ -168,6 +168,7 @@ def test_a_task_of_lower_priority_does_not_change_what_others_draw():
     assert together["high"] == alone["high"]
 
 
+@pytest.mark.early
 @pytest.mark.parametrize("mode", Mode)
 def test_machine_code_does_the_same_as_the_interpreter(mode, monkeypatch):
     pytest.importorskip("numba")

@@ -229,6 +229,7 @@ def test_a_constraint_without_limits_is_not_observed():
     assert (found.verdict, found.reason) == (NOT_OBSERVED, "it states no limit, or nothing that is simulated is limited by it")
 
 
+@pytest.mark.early
 def test_events_are_observed_alike_by_machine_code(monkeypatch):
     pytest.importorskip("numba")
     event = ProcessEvent(name="e", change=ProcessChange.RESUME)

@@ -104,6 +104,7 @@ def test_figure_6_6_in_a_short_run(interpreted):
     check_figure(simulation, jobs)
 
 
+@pytest.mark.early
 @pytest.mark.skipif(find_spec("numba") is None, reason="five minutes take long without numba")
 def test_figure_6_6():
     simulation = simulate(ADVANCED, Duration(JOBS * MS), changes=["Message_Factor.phase=0ms"])

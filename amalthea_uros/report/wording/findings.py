@@ -5,27 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable
 from pathlib import Path
-from typing import Any
 
 from amalthea_uros._internal.files import resolved
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.diagnostics import Finding, Severity
-
-
-def finding_json(finding: Finding) -> dict[str, Any]:
-    """A finding for programs."""
-    place = finding.location
-    return {
-        "rule": finding.rule,
-        "severity": finding.severity,
-        "effect": finding.effect,
-        "message": finding.message,
-        "help": finding.help,
-        "file": str(place.path) if place else None,
-        "line": place.line if place else None,
-        "column": place.column if place else None,
-        "object": finding.object,
-    }
 
 
 def profile_name(identifier: str) -> str:

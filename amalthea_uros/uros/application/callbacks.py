@@ -7,11 +7,11 @@ their messages are not described.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from enum import StrEnum
 
 from amalthea_uros._internal.ports import parameter_services
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.software import Channel
 from amalthea_uros.spec.application import (
     Application,
@@ -31,20 +31,6 @@ from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.application.serving import Serving
 
 
-class CallbackKind(StrEnum):
-    """The kind of entity that a callback belongs to."""
-
-    SUBSCRIPTION = "subscription"
-    TIMER = "timer"
-    SERVICE = "service"
-    CLIENT = "client"
-    GUARD_CONDITION = "guard condition"
-    ACTION_SERVER = "action server"
-    ACTION_CLIENT = "action client"
-    PARAMETERS = "parameter server"
-    LIFECYCLE = "lifecycle services"
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Callback:
     """A callback.
@@ -61,7 +47,7 @@ class Callback:
     """
 
     section: CallbackSection
-    kind: CallbackKind
+    kind: HandleKind
     node: NodeSection
     interval: Time | None
     executor: str
@@ -95,7 +81,7 @@ class Callback:
     @property
     def runs_when_due(self) -> bool:
         """Whether it runs only in the activations of its own task in which it is due, instead of all."""
-        return (self.section.runs_when or ("due" if self.kind is CallbackKind.TIMER else "activated")) == "due"
+        return (self.section.runs_when or ("due" if self.kind is HandleKind.TIMER else "activated")) == "due"
 
     @property
     def origin(self) -> Location | None:
@@ -115,22 +101,22 @@ def callbacks_of(application: Application, middleware: Middleware, notes: Notes)
     return tuple(found)
 
 
-def sections_of(node: NodeSection) -> Iterator[tuple[CallbackKind, CallbackSection]]:
+def sections_of(node: NodeSection) -> Iterator[tuple[HandleKind, CallbackSection]]:
     """The sections of all callbacks of a node."""
     for kind, sections in (
-        (CallbackKind.SUBSCRIPTION, node.subscriptions),
-        (CallbackKind.TIMER, node.timers),
-        (CallbackKind.SERVICE, node.services),
-        (CallbackKind.CLIENT, node.clients),
-        (CallbackKind.GUARD_CONDITION, node.guard_conditions),
-        (CallbackKind.ACTION_SERVER, node.action_servers),
-        (CallbackKind.ACTION_CLIENT, node.action_clients),
+        (HandleKind.SUBSCRIPTION, node.subscriptions),
+        (HandleKind.TIMER, node.timers),
+        (HandleKind.SERVICE, node.services),
+        (HandleKind.CLIENT, node.clients),
+        (HandleKind.GUARD_CONDITION, node.guard_conditions),
+        (HandleKind.ACTION_SERVER, node.action_servers),
+        (HandleKind.ACTION_CLIENT, node.action_clients),
     ):
         yield from ((kind, section) for section in sections)
     if node.parameter_server is not None:
-        yield CallbackKind.PARAMETERS, _of_middleware(f"{node.name}_Parameters", node.parameter_server)
+        yield HandleKind.PARAMETER_SERVICE, _of_middleware(f"{node.name}_Parameters", node.parameter_server)
     if node.lifecycle is not None:
-        yield CallbackKind.LIFECYCLE, _of_middleware(f"{node.name}_Lifecycle", node.lifecycle)
+        yield HandleKind.LIFECYCLE_SERVICE, _of_middleware(f"{node.name}_Lifecycle", node.lifecycle)
 
 
 def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> CallbackSection:
@@ -142,7 +128,7 @@ def _of_middleware(name: str, section: ParameterServer | Lifecycle) -> CallbackS
 
 
 def _callback(
-    kind: CallbackKind,
+    kind: HandleKind,
     section: CallbackSection,
     node: NodeSection,
     nodes: Sequence[NodeSection],
@@ -172,12 +158,12 @@ def _callback(
 
 
 #: What the executor serves without a callback of the application.
-_OF_MIDDLEWARE = (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE)
+_OF_MIDDLEWARE = (HandleKind.PARAMETER_SERVICE, HandleKind.LIFECYCLE_SERVICE)
 
 
-def _may_be_unknown(section: CallbackSection, kind: CallbackKind) -> bool:
+def _may_be_unknown(section: CallbackSection, kind: HandleKind) -> bool:
     """Whether a callback can do without an interval: nothing else of known rate follows from it."""
-    if kind is CallbackKind.GUARD_CONDITION:
+    if kind is HandleKind.GUARD_CONDITION:
         return not section.publishes and not section.requests
     return kind in _OF_MIDDLEWARE
 
@@ -240,9 +226,9 @@ def body_name(callback: str) -> str:
     return f"{callback}_Callback"
 
 
-def _handles(kind: CallbackKind, node: NodeSection, distribution: str | None) -> int:
-    if kind is CallbackKind.PARAMETERS:
+def _handles(kind: HandleKind, node: NodeSection, distribution: str | None) -> int:
+    if kind is HandleKind.PARAMETER_SERVICE:
         return parameter_services(distribution)
-    if kind is CallbackKind.LIFECYCLE:
+    if kind is HandleKind.LIFECYCLE_SERVICE:
         return 0 if node.lifecycle is None else node.lifecycle.services
     return 1

@@ -15,13 +15,14 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation, Trigger
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import ExecutorSection, MessageCost
 from amalthea_uros.units import DataSize, Time
-from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.phases import ExecutorPhases
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.planned import trigger_name
@@ -150,4 +151,4 @@ def _triggered_counter(
 
 def timer_count(callbacks: Iterable[Callback]) -> int:
     """The number of timers that the executor checks."""
-    return sum(callback.kind is CallbackKind.TIMER for callback in callbacks)
+    return sum(callback.kind is HandleKind.TIMER for callback in callbacks)

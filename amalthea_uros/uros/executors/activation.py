@@ -25,7 +25,7 @@ from amalthea_uros.perf.stimuli import (
 )
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.assembly.planned import trigger_name
 
 #: Iterations whose distances are stated; of more, the distances follow from these, a little too short.
@@ -76,9 +76,9 @@ def activation(executor: Executor, callbacks: Sequence[Callback], min_iteration:
 
 def _of_callback(executor: Executor, callback: Callback) -> Iterator[Stimulus]:
     """What a callback adds to the iterations of an executor that blocks."""
-    if callback.kind is CallbackKind.TIMER:
+    if callback.kind is HandleKind.TIMER:
         yield _at_least(f"due_{callback.name}", callback.min_interval)
-    elif callback.kind is not CallbackKind.GUARD_CONDITION or executor.waiting.guard_conditions_end_wait:
+    elif callback.kind is not HandleKind.GUARD_CONDITION or executor.waiting.guard_conditions_end_wait:
         name = message_stimulus_name(callback.name)
         unknown = Custom(name=name, description=f"the rate of {callback.name!r} is not specified")
         yield unknown if callback.interval is None else _at_least(name, callback.min_interval)

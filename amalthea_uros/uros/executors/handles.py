@@ -19,30 +19,19 @@ from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerCo
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.spec.application import MessageCallback, Subscription
 from amalthea_uros.spec.executors import ExecutorSection
-from amalthea_uros.uros.application.callbacks import Callback, CallbackKind
+from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.checks import depth_of
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.transports.line import describes_wire
 from amalthea_uros.uros.transports.messages import publications
 
-_KINDS = {
-    CallbackKind.SUBSCRIPTION: HandleKind.SUBSCRIPTION,
-    CallbackKind.TIMER: HandleKind.TIMER,
-    CallbackKind.SERVICE: HandleKind.SERVICE,
-    CallbackKind.CLIENT: HandleKind.CLIENT,
-    CallbackKind.GUARD_CONDITION: HandleKind.GUARD_CONDITION,
-    CallbackKind.ACTION_SERVER: HandleKind.ACTION_SERVER,
-    CallbackKind.ACTION_CLIENT: HandleKind.ACTION_CLIENT,
-    CallbackKind.PARAMETERS: HandleKind.PARAMETER_SERVICE,
-    CallbackKind.LIFECYCLE: HandleKind.LIFECYCLE_SERVICE,
-}
-_SOURCES = {CallbackKind.ACTION_SERVER: 4, CallbackKind.ACTION_CLIENT: 5}
+_SOURCES = {HandleKind.ACTION_SERVER: 4, HandleKind.ACTION_CLIENT: 5}
 
 
 def handle_names(callback: Callback) -> tuple[str, ...]:
     """The names of the handles of a callback."""
-    if callback.kind in (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE):
+    if callback.kind in (HandleKind.PARAMETER_SERVICE, HandleKind.LIFECYCLE_SERVICE):
         return tuple(f"{callback.name}_{number}" for number in range(1, callback.handles + 1))
     return (callback.name,)
 
@@ -57,17 +46,17 @@ def handles_of(callback: Callback, take: Runnable | None, body: Runnable, profil
     """
     section = callback.section
     is_subscription = isinstance(section, Subscription)
-    has_messages = callback.kind not in (CallbackKind.TIMER, CallbackKind.GUARD_CONDITION)
+    has_messages = callback.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION)
     reliable = has_messages and (not isinstance(section, Subscription) or section.reliability == "reliable")
     incoming = callback.incoming
     handle = Handle(
         name=callback.name,
-        kind=_KINDS[callback.kind],
+        kind=callback.kind,
         runnable=body.name,
         take=take.name if take else None,
         interval=callback.interval,
         jitter=callback.jitter,
-        is_periodic=is_subscription or callback.kind is CallbackKind.TIMER,
+        is_periodic=is_subscription or callback.kind is HandleKind.TIMER,
         phase=section.phase,
         transmission=incoming.transmission if incoming and describes_wire(profile.middleware.transport) else None,
         always=isinstance(section, Subscription) and section.invocation == "always",

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.perf.executors import Publication
+from amalthea_uros.perf.executors import HandleKind, Publication
 from amalthea_uros.perf.network import Direction, Wait
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.transports import Driver
 from amalthea_uros.units import Time
-from amalthea_uros.uros.application.callbacks import Callback, CallbackKind, body_name
+from amalthea_uros.uros.application.callbacks import Callback, body_name
 from amalthea_uros.uros.application.messages import Message, MessageKind
 from amalthea_uros.uros.middleware.profile import MessagePart, Profile
 from amalthea_uros.uros.transports.framing import least_frame, longest_frame, reads
@@ -80,7 +80,7 @@ def acknowledgement_name(transmission: str) -> str:
 
 def publications(callback: Callback, profile: Profile) -> Iterator[Publication]:
     """The messages that a callback sends, in their order: to topics, requests, then its response."""
-    if callback.kind in (CallbackKind.PARAMETERS, CallbackKind.LIFECYCLE):
+    if callback.kind in (HandleKind.PARAMETER_SERVICE, HandleKind.LIFECYCLE_SERVICE):
         yield from _of_middleware(callback, profile)
         return
     for each in wire_messages([callback], profile):
@@ -103,7 +103,7 @@ def _of_middleware(callback: Callback, profile: Profile) -> Iterator[Publication
     """Responses of parameters and of the lifecycle: of unknown sizes, but reliable, so that they keep the executor as others do."""
     timeout = profile.times_out_after(MessageKind.RESPONSE_OUT, 0, reliable=True)
     topics = [f"{callback.name} (response)"]
-    server = callback.node.parameter_server if callback.kind is CallbackKind.PARAMETERS else None
+    server = callback.node.parameter_server if callback.kind is HandleKind.PARAMETER_SERVICE else None
     if server is not None and server.events:
         topics.append("parameter_events")
     for topic in topics:

@@ -1,0 +1,147 @@
+"""A process of which commands are copies, so that they need not load Python and the package, which takes longer than most of them run.
+
+It is a process of its own and not that of the tests, as a copy of that one, with all tests, takes a multiple of the time.
+"""
+
+import json
+import os
+import runpy
+import signal
+import socket
+import subprocess
+import sys
+import traceback
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from select import select
+from tempfile import TemporaryDirectory
+from typing import NoReturn
+
+import shared_analyses
+from click import Context
+from click.testing import CliRunner
+
+SAMPLE = Path(__file__).parents[1] / "samples" / "bodas-test-advanced.yaml"
+
+#: Where there is no such process, each command starts anew.
+IS_POSSIBLE = hasattr(os, "fork") and hasattr(socket, "SOCK_SEQPACKET")
+
+#: What a shell finds as `amuros`.
+CLIENT = """#!{python} -IS
+import json, os, socket, sys
+
+with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as server:
+    server.connect({address!r})
+    socket.send_fds(server, [json.dumps([sys.argv[1:], os.getcwd(), dict(os.environ)]).encode()], [0, 1, 2])
+    sys.exit(int(server.recv(16) or 1))
+"""
+#: Bytes of a request: the words, the folder and the environment of a command.
+_REQUEST = 1 << 18
+
+
+@cache
+def address() -> Path:
+    """Where the process listens, which ends with this one; it is started when it is needed."""
+    shared_analyses.FOLDER.mkdir(exist_ok=True)
+    folder = shared_analyses.FOLDER / f"commands-{os.getpid()}"
+    folder.mkdir()
+    listening = folder / "socket"
+    client = folder / "amuros"
+    client.write_text(CLIENT.format(python=sys.executable, address=str(listening)))
+    client.chmod(0o700)
+    process = subprocess.Popen([sys.executable, __file__, listening], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    _kept.append(process)
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"ready\n"
+    return listening
+
+
+#: The standard input of a process would end with the object.
+_kept: list[subprocess.Popen[bytes]] = []
+
+
+def started(words: Sequence[str], folder: Path, streams: Sequence[int]) -> socket.socket:
+    """What will receive how a command ends that is started with standard streams."""
+    connection = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    connection.connect(str(address()))
+    socket.send_fds(connection, [json.dumps([words, str(folder), dict(os.environ)]).encode()], streams)
+    return connection
+
+
+def warm_up() -> None:
+    """Load what commands load."""
+    from amalthea_uros.cli.main import COMMANDS, cli
+
+    for command in COMMANDS:
+        cli.get_command(Context(cli), command)
+    with TemporaryDirectory() as folder:
+        for words in ("analyze", f"build -o {folder}/app.amxmi", "check", "simulate --duration 10ms"):
+            command, *options = words.split()
+            outcome = CliRunner().invoke(cli, [command, str(SAMPLE), *options])
+            assert outcome.exit_code == 0, outcome.output
+        # The schema of XML is read only where it is violated.
+        wrong = Path(folder, "wrong.amxmi")
+        wrong.write_text(SAMPLE.with_suffix(".amxmi").read_text().replace('unit="ms"', 'unit="hours"', 1))
+        assert CliRunner().invoke(cli, ["check", str(wrong)]).exit_code == 1
+
+
+def serve(listening: str) -> None:
+    """Start commands as long as somebody has the other end of the standard input."""
+    warm_up()
+    shared_analyses.share()
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as server:
+        server.bind(listening)
+        server.listen()
+        sys.stdout.write("ready\n")
+        sys.stdout.flush()
+        while sys.stdin not in select([server, sys.stdin], [], [])[0]:
+            connection, _ = server.accept()
+            request, streams, _, _ = socket.recv_fds(connection, _REQUEST, 3)
+            if os.fork() == 0:
+                server.close()
+                _tell(connection, request, streams)
+            connection.close()
+            for stream in streams:
+                os.close(stream)
+
+
+def _tell(connection: socket.socket, request: bytes, streams: Sequence[int]) -> NoReturn:
+    """Let a copy of this process run a command, and tell the client how that ended."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    child = os.fork()
+    if child == 0:
+        words, folder, environment = json.loads(request)
+        connection.close()
+        os.environ.clear()
+        os.environ.update(environment)
+        _become(words, folder, streams)
+    for stream in streams:
+        os.close(stream)
+    _, status = os.waitpid(child, 0)
+    connection.send(str(os.waitstatus_to_exitcode(status)).encode())
+    os._exit(0)
+
+
+def _become(words: Sequence[str], folder: str, streams: Sequence[int]) -> NoReturn:
+    """What `python -m amalthea_uros` does in this process, with these standard streams."""
+    try:
+        os.chdir(folder)
+        for number, stream in enumerate(streams):
+            os.dup2(stream, number)
+            os.close(stream)
+        sys.stdin, sys.stdout = open(0), open(1, "w")  # noqa: SIM115 - open up to the end of the process
+        # Errors appear line by line, as those of a new process do.
+        sys.stderr = open(2, "w", buffering=1)  # noqa: SIM115
+        sys.argv = ["amuros", *words]
+        runpy.run_module("amalthea_uros", run_name="__main__", alter_sys=True)
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
+    finally:
+        os._exit(1)
+
+
+if __name__ == "__main__":
+    serve(sys.argv[1])
