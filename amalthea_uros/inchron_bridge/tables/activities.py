@@ -222,10 +222,8 @@ class _Graph:
         context = self.context
         if type(activity) in ROWS:
             pattern, row = ROWS[type(activity)]
-            is_point = isinstance(activity, perf.SchedulePoint)
-            yield row.build(
-                activity, context, name=numbered("SchedulePoint", context) if is_point else self.named(pattern, activity)
-            )
+            is_counted = isinstance(activity, perf.SchedulePoint)
+            yield row.build(activity, context, name=numbered(pattern, context) if is_counted else self.named(pattern, activity))
             return
         match activity:
             case perf.Execute(demand=demand):

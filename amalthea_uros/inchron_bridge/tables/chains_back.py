@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, get_args
@@ -219,13 +218,7 @@ def _items(before: str | None, parts: list[Any], after: str | None) -> perf.Sequ
 
 
 def _meaning(event: Any) -> Any:
-    return type(event), tuple((name, value) for name, value in _fields(event).items() if name not in ("name", "origin"))
-
-
-def _fields(event: Any) -> Mapping[str, Any]:
-    from dataclasses import fields
-
-    return {field.name: getattr(event, field.name) for field in fields(event) if field.compare}
+    return replace(event, name="")
 
 
 def _events_of(chain: Any) -> set[str]:

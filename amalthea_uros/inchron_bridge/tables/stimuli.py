@@ -12,7 +12,7 @@ from amalthea_uros.inchron_bridge.tables.conditions import build_condition
 from amalthea_uros.inchron_bridge.tables.distributions import whole_part
 from amalthea_uros.perf import distributions
 from amalthea_uros.perf import stimuli as perf
-from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import highest, lowest
 
 SCENARIO = "DefaultScenario"
@@ -43,8 +43,6 @@ def build_stimuli(context: Exporting) -> None:
 
 
 def _triggers(body: Any) -> list[Trigger]:
-    from amalthea_uros.perf.activities import walk
-
     return [activity for activity in walk(body) if isinstance(activity, Trigger)]
 
 
