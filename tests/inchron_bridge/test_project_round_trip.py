@@ -18,6 +18,8 @@ from amalthea_uros.services.subject import open_system
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
 CONSTRUCTS = every(4, sorted(SHARED.glob("vectors/constructs*/*.amxmi")))
+#: A burst without a number of activations, and a task with two allocations.
+UNCLEAR = [*SHARED.glob("vectors/am2inc/31_burst_count0_ok.amxmi"), *SHARED.glob("vectors/am2inc/40_task_twice.amxmi")]
 
 
 @pytest.mark.parametrize("path", [*SAMPLES, *CONSTRUCTS], ids=lambda path: path.stem)
@@ -29,6 +31,12 @@ def test_a_project_means_the_same_as_what_it_was_made_of(path, tmp_path):
     assert [finding.rule for finding in opened.findings] == []
     # A model spells units in its own way, such as 0 ms; a project that is exported again has those of its values.
     assert path.suffix == ".amxmi" or export(first, again).text == text
+
+
+@pytest.mark.parametrize("path", UNCLEAR, ids=lambda path: path.stem)
+def test_what_a_project_can_only_say_clearly_stays_unclear(path, tmp_path):
+    export(path, tmp_path / "project.iprx")
+    assert open_system(tmp_path / "project.iprx").system == open_system(path).system
 
 
 @pytest.mark.parametrize("sample", every(5, SAMPLES), ids=lambda path: path.stem)
