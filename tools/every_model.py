@@ -36,6 +36,7 @@ ARGUMENTS = {
     "report": "MODEL -o OUT/report.html -o OUT/report.md -o OUT/report.dot -o OUT/report.mmd",
     "diff": "MODEL EDITED",
     "migrate": "MODEL -o OUT/migrated",
+    "export": "MODEL -o OUT/exported.amxmi",
 }
 #: A number of a model, which is edited: a value, or a limit of an execution time.
 _VALUE = re.compile(rb"(?<= value=\")(?=[1-9])")
@@ -70,7 +71,7 @@ def run(command: str, path: Path, limit: int) -> Outcome:
     """A command on a file, in a copy of this process."""
     with TemporaryDirectory(prefix="amuros-every-") as name:
         folder = Path(name)
-        edited = folder / "edited.amxmi"
+        edited = folder / f"edited{path.suffix}"
         edited.write_bytes(_VALUE.sub(b"1", path.read_bytes(), count=1))
         given = {"MODEL": str(path), "EDITED": str(edited)}
         words = [given.get(word, word.replace("OUT", name)) for word in ARGUMENTS[command].split()]

@@ -24,7 +24,7 @@ class Exporting:
     units : as a model spells quantities, by the name of the object and the value; none for descriptions
     iterations : the shortest and the longest time between two iterations of executors, by the stimuli that stand for them
     entry : number of the next entry of a call graph
-    condition : number of the next condition
+    condition : number of the next condition or schedule point
     holder : name of the object whose references are being resolved
     graphs : of each event chain; several if it begins with several events
     """

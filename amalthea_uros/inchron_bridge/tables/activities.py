@@ -9,7 +9,7 @@ from typing import Any
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import keep_whole, note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
-from amalthea_uros.inchron_bridge.tables.conditions import build_condition, whole_number
+from amalthea_uros.inchron_bridge.tables.conditions import build_condition, numbered, whole_number
 from amalthea_uros.inchron_bridge.tables.demand import of_every_core_type
 from amalthea_uros.inchron_bridge.tables.distributions import build_demand
 from amalthea_uros.inchron_bridge.tables.rows import Row, choice, refers, refers_to_several
@@ -222,7 +222,8 @@ class _Graph:
         context = self.context
         if type(activity) in ROWS:
             pattern, row = ROWS[type(activity)]
-            yield row.build(activity, context, name=self.named(pattern, activity))
+            is_counted = isinstance(activity, perf.SchedulePoint)
+            yield row.build(activity, context, name=numbered(pattern, context) if is_counted else self.named(pattern, activity))
             return
         match activity:
             case perf.Execute(demand=demand):

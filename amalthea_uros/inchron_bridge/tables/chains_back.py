@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, get_args
@@ -53,7 +52,7 @@ class EventsReader:
         """Read all."""
         for event in self.context.list_of(self.model, "events", get_args(perf.Event)):
             self.events.append(event)
-            self.names.setdefault(_meaning(event), event.name)
+            self.names.setdefault(replace(event, name=""), event.name)
         known = {event.name for event in self.events}
         for item in self.model["eventChains"]:
             if item in self.joined or (SYNCHRONIZED in self.context.noted(item) and is_sealed(item)):
@@ -95,7 +94,7 @@ class EventsReader:
 
     def added(self, event: Any) -> str:
         """The name of the event that means the same; if there is none, it is added under a free name."""
-        meaning = _meaning(event)
+        meaning = replace(event, name="")
         if meaning not in self.names:
             taken = {each.name for each in self.events}
             name, number = event.name, 0
@@ -216,16 +215,6 @@ def _items(before: str | None, parts: list[Any], after: str | None) -> perf.Sequ
         segments.append(perf.Segment(stimulus=start, response=part, items=_items(start, pending, part)))
         start, pending = part, []
     return perf.Sequence(tuple(segments))
-
-
-def _meaning(event: Any) -> Any:
-    return type(event), tuple((name, value) for name, value in _fields(event).items() if name not in ("name", "origin"))
-
-
-def _fields(event: Any) -> Mapping[str, Any]:
-    from dataclasses import fields
-
-    return {field.name: getattr(event, field.name) for field in fields(event) if field.compare}
 
 
 def _events_of(chain: Any) -> set[str]:

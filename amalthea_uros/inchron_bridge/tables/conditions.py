@@ -24,8 +24,7 @@ _RELATION_OF = {literal: relation for relation, literal in _RELATIONS.items()}
 
 def build_condition(condition: perf.Condition | None, context: Exporting, source: object) -> ProjectObject:
     """A condition of the model; without conjunctions if it cannot be decided by what a project has."""
-    made = ProjectObject("Condition", name=f"Condition_{context.condition}")
-    context.condition += 1
+    made = ProjectObject("Condition", name=numbered("Condition", context))
     context.model.add("globalConditions", made)
     for every in condition.alternatives if condition else ():
         expressions = [_expression(comparison, context) for comparison in every]
@@ -37,6 +36,12 @@ def build_condition(condition: perf.Condition | None, context: Exporting, source
             return made
         made.add("conjunctions", ProjectObject("Conjunction", expressions=known))
     return made
+
+
+def numbered(kind: str, context: Exporting) -> str:
+    """The next name of what is numbered over the whole model."""
+    context.condition += 1
+    return f"{kind}_{context.condition - 1}"
 
 
 def _expression(comparison: perf.Comparison, context: Exporting) -> ProjectObject | None:

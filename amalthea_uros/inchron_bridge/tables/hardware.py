@@ -32,7 +32,8 @@ def build_hardware(context: Exporting, buses: frozenset[str]) -> None:
             context.changed(clock, "a clock without a frequency", "without one; tools may take 1 GHz for it")
         made = None if clock.frequency is None else _frequency(clock, context)
         model.add("clocks", context.register("Clock", clock.name, ProjectObject("Clock", name=clock.name, frequency=made)))
-    ideal = ProjectObject("Clock", name=_free_name(context), period=time(NANOSECOND), range=time(SECOND))
+    free = IDEAL_CLOCK if IDEAL_CLOCK not in system.clocks else f"{IDEAL_CLOCK}_0"
+    ideal = ProjectObject("Clock", name=free, period=time(NANOSECOND), range=time(SECOND))
     model.add("clocks", context.register("IdealClock", "", ideal))
     cpus = []
     for structure in system.hardware.walk():
@@ -42,10 +43,6 @@ def build_hardware(context: Exporting, buses: frozenset[str]) -> None:
             if not structure.cores:
                 model.add("memories", _memory(memory, ideal, context))
     _connect(cpus, context)
-
-
-def _free_name(context: Exporting) -> str:
-    return IDEAL_CLOCK if IDEAL_CLOCK not in context.system.clocks else f"{IDEAL_CLOCK}_0"
 
 
 def _frequency(clock: perf.Clock, context: Exporting) -> ProjectObject:

@@ -25,6 +25,8 @@ POLICIES = {"FixedPriority": perf.Policy.FIXED_PRIORITY_PREEMPTIVE, "EDF": perf.
 _WRITTEN = frozenset(POLICIES.values())
 
 _CORES = "cpuCores"
+#: The key of the allocations of a task besides the one that is the place of its process.
+FURTHER = "allocations"
 
 
 def build_systems(context: Exporting) -> None:
@@ -150,4 +152,5 @@ def _place_task(process: ProjectObject, allocations: list[TaskAllocation], conte
         context.keep(process, allocation, "parameters")
         context.need("Scheduler", allocation.scheduler, process.name).add("schedulables", process)
     for other in allocations[1:]:
-        context.lost(process, f"a second allocation, to {other.scheduler},", "a process is below one scheduler")
+        context.lost(process, f"a second allocation, to {other.scheduler},")
+    keep_list(process, FURTHER, allocations[1:])

@@ -8,7 +8,7 @@ from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.values import time_of
-from amalthea_uros.inchron_bridge.tables.os import DEFAULT, GLOBAL, POLICIES
+from amalthea_uros.inchron_bridge.tables.os import DEFAULT, FURTHER, GLOBAL, POLICIES
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
 
@@ -147,7 +147,7 @@ class _SystemReader:
             origin=context.located(process),  # type: ignore[arg-type]
             **context.fields(process, TaskAllocation, ("parameters",)),
         )
-        self.result.tasks.append(allocation)
+        self.result.tasks += [allocation, *context.list_of(process, FURTHER, (TaskAllocation,))]
 
     def priority(self, process: ProjectObject, above: ProjectObject) -> int | None:
         """The priority; higher numbers are served first, unless the scheduler inverts the order."""

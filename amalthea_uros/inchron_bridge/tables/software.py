@@ -8,7 +8,7 @@ from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.activities import build_graph
-from amalthea_uros.inchron_bridge.tables.conditions import whole_number
+from amalthea_uros.inchron_bridge.tables.conditions import build_condition, whole_number
 from amalthea_uros.inchron_bridge.tables.os import global_system
 from amalthea_uros.inchron_bridge.tables.rows import Row
 from amalthea_uros.inchron_bridge.tables.stimuli import add_activations
@@ -106,6 +106,9 @@ def build_graphs(context: Exporting) -> None:
             note(context.need("Process", process.name, process.name), stimuli=list(process.stimuli))
         _set_graph("Process", process, context)
     for runnable in software.runnables:
+        if runnable.condition is not None:
+            # A function cannot have a condition; the importer of INCHRON writes it beside the function, too.
+            build_condition(runnable.condition, context, runnable)
         _set_graph("Function", runnable, context)
 
 

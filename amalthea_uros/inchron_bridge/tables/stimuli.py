@@ -12,7 +12,7 @@ from amalthea_uros.inchron_bridge.tables.conditions import build_condition
 from amalthea_uros.inchron_bridge.tables.distributions import whole_part
 from amalthea_uros.perf import distributions
 from amalthea_uros.perf import stimuli as perf
-from amalthea_uros.perf.activities import Trigger
+from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import highest, lowest
 
 SCENARIO = "DefaultScenario"
@@ -32,7 +32,7 @@ def build_stimuli(context: Exporting) -> None:
     context.model.add("scenarios", scenario)
     context.model["defaultScenario"] = scenario
     triggered = context.system.activity_classes and {
-        activity.stimulus for body in context.system.software.bodies for activity in _triggers(body)
+        activity.stimulus for body in context.system.software.bodies for activity in walk(body) if isinstance(activity, Trigger)
     }
     for stimulus in context.system.stimuli.stimuli:
         made = _stimulus(stimulus, context, scenario, triggered or set())
@@ -40,12 +40,6 @@ def build_stimuli(context: Exporting) -> None:
         context.register("Stimulus", stimulus.name, made)
     for clock in context.system.stimuli.clocks:
         context.lost(clock, type(clock).__name__, "it is left out")
-
-
-def _triggers(body: Any) -> list[Trigger]:
-    from amalthea_uros.perf.activities import walk
-
-    return [activity for activity in walk(body) if isinstance(activity, Trigger)]
 
 
 def _stimulus(stimulus: perf.Stimulus, context: Exporting, scenario: ProjectObject, triggered: set[str]) -> ProjectObject:
@@ -77,6 +71,9 @@ def _stimulus(stimulus: perf.Stimulus, context: Exporting, scenario: ProjectObje
             )
             made = _random(name, stimulus.period, context, name, offset=stimulus.offset)
             made["burstPatternSettings"] = pattern
+            if not stimulus.count:
+                context.changed(stimulus, "a burst without a number of activations", "with as many as fit into its length")
+                keep_whole(made, STIMULUS, stimulus)
         case _:
             made = _other(stimulus, context)
     scenario.add("generators", made)
