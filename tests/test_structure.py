@@ -45,7 +45,7 @@ LINES = {
     "simulate": 8628,
     "source": 2970,
     "spec": 2957,
-    "timing": 5634,
+    "timing": 5638,
     "trace": 5057,
     "units": 206,
     "uros": 7450,

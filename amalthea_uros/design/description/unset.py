@@ -18,6 +18,11 @@ def unset_times(origin: DescriptionOrigin) -> Iterator[Change]:
     """Examples of the times that messages take in networks, agents and the host, where none is stated."""
     keys = origin.keys
     for key in keys:
-        if key.path[:1] == ("middleware",) and len(key.path) > 2 and key.field in _TIMES.get(str(key.path[1]), ()) and key.value is None:
+        if (
+            key.path[:1] == ("middleware",)
+            and len(key.path) > 2
+            and key.field in _TIMES.get(str(key.path[1]), ())
+            and key.value is None
+        ):
             target, _, field = short_name(key, keys).rpartition(".")
             yield Change(target, field, _EXAMPLE)
