@@ -174,7 +174,7 @@ def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Ite
     if not _is_of_other_loop(executor):
         yield from _loop(executor, names)
     yield "callbacks: in-executor"
-    if not any(handle.entity in facts.entities for handle in executor.handles):
+    if not any(handle.entity in facts.entities or handle.kind is CodeEntityKind.LIFECYCLE for handle in executor.handles):
         yield f"order: {GAP} # nothing that is added to it is understood: describe its callbacks under the nodes"
     order = [names.handles[handle.entity] for handle in executor.handles if handle.entity in names.handles]
     if len(order) > 1:
@@ -196,6 +196,8 @@ def _sender(sender: CodeSender, name: str, names: CodeNames) -> Iterator[str]:
 def _thread(thread: Thread) -> Iterator[str]:
     if thread.stack is not None:
         yield f"stack: {thread.stack} B{_at(thread.place)}"
+    elif thread.entry is not None:
+        yield f"stack: {GAP}{_at(thread.place)}"
     yield f"priority: {GAP if thread.priority is None else thread.priority}{_at(thread.place)}"
     if thread.core is not None:
         yield f"core: {GAP}{_at(thread.place, f'pinned to core {thread.core}')}"

@@ -21,11 +21,9 @@ from amalthea_uros.source.platform import platform_of
 from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
 from amalthea_uros.source.sleeps import SLEEPS
-from amalthea_uros.source.walk import CodeWalk, FunctionCall
+from amalthea_uros.source.walk import ENTRIES, CodeWalk, FunctionCall
 
 _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
-#: How the entry of a program can be called; two of one name are two programs.
-_ENTRIES = ("main", "app_main", "appMain", "setup")
 #: rclc_parameter/include/rclc_parameter/rclc_parameter.h of ros2/rclc; by the distribution.
 _SERVER_HANDLES = "RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES"
 #: A place in an array that is not constant.
@@ -49,6 +47,8 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
     if not program.macros[_SERVER_HANDLES]:
         program.macros[_SERVER_HANDLES].add(str(parameter_services(build.ros.value if build.ros is not None else None)))
+    for name, stated in build.macros.items():
+        program.macros[name].add(stated)
     walk = CodeWalk(program, _NAMES)
     walk.all()
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program), *build.findings]
@@ -177,7 +177,7 @@ def _note_publications(facts: CodeFacts, walk: CodeWalk) -> None:
 
 def _several_programs(program: CodeProgram) -> list[Finding]:
     found = []
-    for name in _ENTRIES:
+    for name in set(ENTRIES) - {"loop"}:
         entries = [each for each in program.functions.get(name, ()) if not each.owner]
         if len({each.file.path for each in entries}) > 1:
             place = entries[1].file.location(entries[1].body.start_point.row, 0)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.source.arrays import counted_array, elements_of, member_of
+from amalthea_uros.source.constructions import arguments_of, made_class
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram
 from amalthea_uros.source.syntax import descendants, parse_expression, text_of
@@ -76,6 +77,8 @@ class Expression:
         if len(functions) != 1 or self.depth > _MAX_DEPTH:
             return self
         function = functions[0]
+        if function.name == function.owner:
+            return self
         statements = [child for child in function.body.named_children if child.type != "comment"]
         returns = [each for each in descendants(function.body) if each.type == "return_statement"]
         if len(returns) != 1 or statements[-1:] != returns or not returns[0].named_children:
@@ -136,10 +139,12 @@ class Expression:
             return bound.owner
         if own.node.type == "subscript_expression":
             element = own._element()
-            if element is not None and element.node.type != "initializer_list":
+            if element is not None and element.node.type not in ("initializer_list", "argument_list"):
                 return element.owner
             array = own.node.child_by_field_name("argument")
             return own.at(array).owner if array is not None else ""
+        if (made := made_class(own.node)) in self.program.members:
+            return made
         return self.program.classes.get(own.text.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], "")
 
     def _only_class(self, member: str) -> str:
@@ -211,7 +216,8 @@ class Expression:
         own = self.core
         if own.node.type == "subscript_expression" and own.depth <= _MAX_DEPTH:
             return own._element() or own
-        if own.node.type == "field_expression" and own.depth <= _MAX_DEPTH and (member := own._member()) is not None:
+        member = own._member() if own.depth <= _MAX_DEPTH else None
+        if member is not None:
             return member
         if own.node.type not in ("identifier", "field_expression", "qualified_identifier") or own.depth > _MAX_DEPTH:
             return own
@@ -246,9 +252,13 @@ class Expression:
     def _member(self) -> Expression | None:
         """The member of a structure that is initialised with a list, and to which nothing assigns a value."""
         holder, field = self.node.child_by_field_name("argument"), self.node.child_by_field_name("field")
-        if holder is None or field is None or text_of(field) in self.program.changed or holder.type == "this":
+        if self.node.type == "identifier" or (holder is not None and holder.type == "this"):
+            return self._own_member(text_of(field or self.node))
+        if holder is None or field is None or text_of(field) in self.program.changed:
             return None
         values = self.at(holder).resolved
+        if made := values._made(self.at(holder).owner, text_of(field)):
+            return made
         if values.node.type != "initializer_list":
             return None
         base = self.at(holder).core
@@ -257,6 +267,36 @@ class Expression:
         order = tuple(self.program.members.get(self.program.classes.get(base.name, ""), ()))
         value = member_of(values.node, text_of(field), order)
         return values.at(value).resolved if value is not None else None
+
+    def _own_member(self, name: str) -> Expression | None:
+        """What the object whose method it is in was made with for a member of it."""
+        owner = self.function.owner if self.function is not None else ""
+        if not owner or name in self.program.changed or name not in self.program.members.get(owner, ()):
+            return None
+        if self.function is not None and name in self.function.locals:
+            return None
+        holder = self.bindings.get(THIS)
+        if isinstance(holder, Expression):
+            return holder.resolved._made(owner, name)
+        only = [variable for variable, kind in self.program.classes.items() if kind == owner]
+        if len(only) != 1 or self.program.number_of_objects(owner) > 1 or only[0] not in self.program.values:
+            return None
+        node, place = self.program.values[only[0]]
+        file = place.file if isinstance(place, CodeFunction) else place
+        return Expression(self.program, node, file, depth=self.depth + 1)._made(owner, name)
+
+    def _made(self, owner: str, member: str) -> Expression | None:
+        """What the constructor of a class gives a member of an object, which is made with the arguments of this expression."""
+        constructors, given = self.program.constructors.get(owner, ()), self.program.constructed.get(owner, {}).get(member)
+        arguments = arguments_of(self.node)
+        if len(constructors) != 1 or given is None or arguments is None or self.depth > _MAX_DEPTH:
+            return None
+        constructor = constructors[0]
+        bindings: dict[str, Binding] = dict(zip(constructor.parameters, map(self.at, arguments), strict=False))
+        is_object = self.program.classes.get(member) in self.program.members
+        if given.type in ("argument_list", "initializer_list") and given.named_child_count == 1 and not is_object:
+            given = given.named_children[0]
+        return Expression(self.program, given, constructor.file, constructor, bindings, self.depth + 1).resolved
 
     @property
     def length(self) -> int | None:

@@ -30,6 +30,8 @@ _LOOPS = ("while_statement", "do_statement", "for_statement", "for_range_loop")
 _CHOICES = ("if_statement", "switch_statement", "conditional_expression")
 #: Calls of functions of the sources that are followed; those of functions that call others twice grow without limit.
 _MAX_ENTRIES = 5_000
+#: How the entry of a program can be called; methods can have the same names.
+ENTRIES = ("main", "app_main", "appMain", "setup", "loop")
 #: Functions of the application are followed if they lead to calls whose names begin so, or are among these.
 _RELEVANT = ("rclc_", "rcl_", "rmw_", "set_microros_")
 
@@ -117,7 +119,8 @@ class CodeWalk:
         for group in self.program.functions.values():
             group[:] = [function for function in group if not self._is_inactive(function)]
         for function in self.program.every_function():
-            if function.name not in self._relevant.called and function in self._relevant.functions:
+            is_entry = not function.owner and function.name in ENTRIES
+            if (is_entry or function.name not in self._relevant.called) and function in self._relevant.functions:
                 self.function(function)
         # Lambdas that are the code of threads; what they call is called by others only there.
         while self._started:
@@ -361,7 +364,7 @@ def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance
     callers: dict[str, set[CodeFunction]] = {}
     for function, inner in calls.items():
         for name in inner:
-            if name in program.functions and name != function.name:
+            if any(each is not function for each in program.functions.get(name, ())):
                 callers.setdefault(name, set()).add(function)
     found = {function for function, inner in calls.items() if any(n.startswith(_RELEVANT) or n in names for n in inner)}
     waiting = list(found)
