@@ -133,6 +133,8 @@ def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) 
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
     if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
         yield f"multithread: true{_at(option.place)}"
+    elif facts.lock is not None:
+        yield f"multithread: true{_at(facts.lock, 'the application locks the session')}"
     yield from _transport(facts)
     limits = list(_limits(facts, options))
     if limits:

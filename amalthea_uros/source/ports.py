@@ -113,7 +113,12 @@ def _priority(given: Expression | None, named: Mapping[str, int]) -> int | None:
 
 
 #: Functions that set a network; the bit rate of the link is not in the code.
-_UDP = ("set_microros_wifi_transports", "set_microros_native_ethernet_transports", "rmw_uros_options_set_udp_address")
+_UDP = (
+    "set_microros_wifi_transports",
+    "set_microros_native_ethernet_transports",
+    "set_microros_native_ethernet_udp_transports",
+    "rmw_uros_options_set_udp_address",
+)
 _SERIAL = ("set_microros_transports", "set_microros_serial_transports")
 SETTERS = frozenset({*_UDP, *_SERIAL, "rmw_uros_set_custom_transport"})
 #: The rate at which `set_microros_transports` of micro_ros_arduino opens the line: src/default_transport.cpp.
@@ -135,6 +140,10 @@ def transport_of(
     place = build.place if build is not None else call.place if call is not None else None
     if place is None:
         return None
+    keys = {_key(each, port, board) for each in every if each.name in SETTERS and each.uncertain}
+    if build is None and len(keys) > 1:
+        note = "by a condition that the sources do not decide"
+        return CodeTransport(key=None, values=(), note=note, place=place)
     key = build.value if build is not None else _key(call, port, board) if call is not None else None
     rate = _baud_rate(every, program)
     if call is not None and call.name == "set_microros_transports":

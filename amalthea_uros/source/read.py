@@ -14,7 +14,8 @@ from amalthea_uros.source.executors import ACTIONS, SPINS, executor_of
 from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import WITH_HANDLES, flaws, not_understood
-from amalthea_uros.source.loops import SENDS, add_senders, add_spins
+from amalthea_uros.source.locks import LOCKS
+from amalthea_uros.source.loops import SENDS, add_senders, add_spins, note_lock
 from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.messages import defined_types
 from amalthea_uros.source.platform import platform_of
@@ -23,7 +24,9 @@ from amalthea_uros.source.program import CodeProgram, read_program
 from amalthea_uros.source.sleeps import SLEEPS
 from amalthea_uros.source.walk import ENTRIES, CodeWalk, FunctionCall
 
-_NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
+_NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, *LOCKS, "Serial.begin"})
+#: What FreeRTOS.h and task.h define alike for all controllers.
+_CONSTANTS = {"tskIDLE_PRIORITY": "0"}
 #: rclc_parameter/include/rclc_parameter/rclc_parameter.h of ros2/rclc; by the distribution.
 _SERVER_HANDLES = "RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES"
 #: A place in an array that is not constant.
@@ -47,7 +50,7 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
     if not program.macros[_SERVER_HANDLES]:
         program.macros[_SERVER_HANDLES].add(str(parameter_services(build.ros.value if build.ros is not None else None)))
-    for name, stated in build.macros.items():
+    for name, stated in (_CONSTANTS | build.macros).items():
         program.macros[name].add(stated)
     walk = CodeWalk(program, _NAMES)
     walk.all()
@@ -58,10 +61,11 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, build, name)
     _note_objects(facts, walk)
     add_spins(facts, walk.calls)
-    threads = _note_threads(facts, walk)
+    _note_threads(facts, walk)
     _note_main_thread(facts, walk, build)
     _note_publications(facts, walk)
-    add_senders(facts, walk.calls, threads)
+    add_senders(facts, walk.calls)
+    note_lock(facts, walk)
     facts.transport = transport_of(walk.calls, program, build.transport, facts.port, name)
     _note_options(facts, sources, build, name)
     facts.findings += [*not_understood(walk, facts), *flaws(facts, walk), *message_flaws(facts, program)]
@@ -120,17 +124,16 @@ def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:
             ACTIONS[call.name](facts, call, walk)
 
 
-def _note_threads(facts: CodeFacts, walk: CodeWalk) -> dict[str, Thread]:
-    """Give each executor the thread whose entry leads to its spin; all threads by the scopes of their entries."""
+def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
+    """The threads, and for each executor the one whose entry leads to its spin."""
     is_idf = any(b'"freertos/' in file.text or b"<freertos/" in file.text for file, _ in walk.program.files)
     threads = [thread_of(call, walk, not is_idf) for call in walk.calls if call.name in FORMS]
-    by_entry: dict[str, Thread] = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
+    facts.threads = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
     for call in walk.calls:
         given = call.argument(0)
         executor = facts.executors.get(given.key) if call.name in SPINS and given is not None else None
         if executor is not None and call.root is not None:
-            executor.thread = executor.thread or by_entry.get(call.root.scope)
-    return by_entry
+            executor.thread = executor.thread or facts.threads.get(call.root.scope)
 
 
 def _note_main_thread(facts: CodeFacts, walk: CodeWalk, build: BuildFacts) -> None:
