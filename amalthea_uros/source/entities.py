@@ -122,7 +122,9 @@ def message_type(given: Expression) -> MessageType | None:
     if own.node.type != "call_expression":
         return None
     name, arguments = called(own.node)
-    names = [text_of(argument) for argument in arguments]
+    # A parameter of a macro is replaced in the names of types, too; one of a function is not.
+    is_macro = own.function is not None and own.function.is_macro
+    names = [own.at(argument).name if is_macro else text_of(argument) for argument in arguments]
     if name not in _TYPE_SUPPORTS:
         return None
     if len(names) == 2:
@@ -132,15 +134,15 @@ def message_type(given: Expression) -> MessageType | None:
 
 def callback_of(given: Expression, walk: CodeWalk) -> CodeCallback | None:
     """The function that an expression names; None for NULL."""
-    own = given.core
+    own = given.resolved
     if own.node.type == "lambda_expression":
         function = walk.lambdas.get(text_of(own.node))
         return CodeCallback(name=function.name if function is not None else "lambda", function=function)
-    name = given.name
+    name = own.name
     if name in ("NULL", "nullptr", "0"):
         return None
     found = walk.program.functions.get(name, [])
-    near = [each for each in found if each.file is given.file] or found
+    near = [each for each in found if each.file is own.file] or found
     return CodeCallback(name=name, function=near[0] if len(near) == 1 else None)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.ports import known_ports
@@ -13,9 +14,12 @@ from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
 from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated, session_users
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
-from amalthea_uros.source.syntax import descendants
+from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
 
 _MILLISECOND = 10**9
 _SECOND = 10**12
@@ -286,6 +290,11 @@ def not_understood(walk: CodeWalk, facts: CodeFacts) -> Iterator[Finding]:
     yield from _unread(walk)
 
 
+def _is_read_macro(node: Node, walk: CodeWalk) -> bool:
+    name = node.child_by_field_name("name") if node.type == "preproc_function_def" else None
+    return name is not None and any(each.is_macro for each in walk.program.functions.get(text_of(name), ()))
+
+
 def _unread(walk: CodeWalk) -> Iterator[Finding]:
     """Calls in the text that no path through the code led to."""
     for file, root in walk.program.files:
@@ -294,7 +303,7 @@ def _unread(walk: CodeWalk) -> Iterator[Finding]:
         if _CALL.search(file.text) is None:
             continue
         for node in descendants(root):
-            if node.type in ("comment", "string_literal", "preproc_def", "function_declarator"):
+            if node.type in ("comment", "string_literal", "preproc_def", "function_declarator") or _is_read_macro(node, walk):
                 ignored.append((node.start_byte, node.end_byte))
         for match in _CALL.finditer(file.text):
             position = match.start()

@@ -18,7 +18,7 @@ from amalthea_uros.source.walk import CodeWalk, FunctionCall
 MICROSECOND, MILLISECOND, SECOND = 10**6, 10**9, 10**12
 
 #: Of a stack of FreeRTOS that is counted in words.
-_WORD = 4
+WORD = 4
 #: CMSIS-RTOS2, ARM-software/CMSIS_5 CMSIS/RTOS2/Include/cmsis_os2.h.
 _CMSIS_PRIORITIES = {
     "osPriorityIdle": 1,
@@ -57,12 +57,12 @@ FORMS: Mapping[str, _ThreadForm] = {
 }
 
 
-def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | None:
+def thread_of(call: FunctionCall, walk: CodeWalk, unit: int | None) -> Thread | None:
     """The thread that a call creates.
 
     Parameters
     ----------
-    in_words : whether stacks of `xTaskCreate` are counted in words, as FreeRTOS does, and ESP-IDF does not
+    unit : in which stacks of `xTaskCreate` are counted, in bytes: words of FreeRTOS, but not in ESP-IDF; None if that is unknown
     """
     form = FORMS[call.name]
     entry = call.argument(form.entry)
@@ -74,7 +74,7 @@ def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | No
         attributes.get(key) or (call.argument(index) if index is not None else None)
         for key, index in (("name", form.name), ("stack_size", form.stack), ("priority", form.priority), ("core", form.core))
     )
-    factor = _WORD if in_words and call.name in ("xTaskCreate", "xTaskCreateStatic", "osThreadDef") else 1
+    factor = unit if call.name in ("xTaskCreate", "xTaskCreateStatic", "osThreadDef") else 1
     size = stack.number if stack is not None else None
     return Thread(
         name=(
@@ -85,7 +85,7 @@ def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | No
         or callback.name,
         entry=callback.function,
         place=call.place,
-        stack=size * factor if size is not None and size > 0 else None,
+        stack=size * factor if size is not None and factor is not None and size > 0 else None,
         priority=_priority(priority, _FIRST_CMSIS_PRIORITIES if call.name == "osThreadDef" else _CMSIS_PRIORITIES),
         core=core.number if core is not None else None,
     )

@@ -31,6 +31,7 @@ class CodeFunction:
     owner : the class of a method, "" for other functions
     parameters : their names, in order; "" for one without
     locals : names that are declared in it, parameters included
+    is_macro : whether it is a macro with parameters, whose text is read as that of a function
     """
 
     name: str
@@ -39,6 +40,7 @@ class CodeFunction:
     owner: str = ""
     parameters: tuple[str, ...] = ()
     locals: frozenset[str] = frozenset()
+    is_macro: bool = False
 
     @property
     def scope(self) -> str:
@@ -111,7 +113,27 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
         program.files.append((file, root))
         for node in descendants(root):
             _note(program, file, node)
+    for name, (file, node) in program.function_macros.items():
+        function = _function_of_macro(name, file, node)
+        if function is not None:
+            program.functions[name].append(function)
     return program
+
+
+def _function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction | None:
+    """A macro that calls functions of rclc, as if it were a function; None if its text is no statement."""
+    value, parameters = node.child_by_field_name("value"), node.child_by_field_name("parameters")
+    text = text_of(value) if value is not None else ""
+    if value is None or parameters is None or "rclc_" not in text or "##" in text:
+        return None
+    # Its code has the rows that it has in the file.
+    code = f"{chr(10) * value.start_point.row}void f{text_of(parameters)} {{ {text.replace(chr(92), chr(32))}; }}"
+    root = parse(SourceFile(file.path, code.encode()))
+    body = next((each for each in descendants(root) if each.type == "compound_statement"), None)
+    if body is None or body.has_error:
+        return None
+    names = tuple(text_of(each) for each in parameters.named_children)
+    return CodeFunction(name, file, body, parameters=names, locals=frozenset(names), is_macro=True)
 
 
 def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
@@ -220,11 +242,14 @@ def _note_objects(program: CodeProgram, file: SourceFile, node: Node) -> None:
     kind = node.child_by_field_name("type")
     if kind is None or kind.type not in ("type_identifier", "qualified_identifier", "template_type", *_CLASSES):
         return
-    name = text_of(kind.child_by_field_name("name") or kind).rpartition("::")[2]
+    named = kind.child_by_field_name("name")
+    if named is None and kind.type in _CLASSES:
+        named = next((variable for variable, _ in declared(node)), None)
+    name = text_of(named or kind).rpartition("::")[2]
     for variable, _ in declared(node):
         known = program.classes.setdefault(text_of(variable), name)
         program.classes[text_of(variable)] = name if known == name else ""
-    around = _class_around(node)
+    around = _class_around(node) if node.type == "field_declaration" else ""
     for declarator in node.children_by_field_name("declarator"):
         types = {each.type for each in descendants(declarator)}
         if not types & {"pointer_declarator", "reference_declarator", "function_declarator"}:
@@ -277,8 +302,12 @@ def declared(node: Node) -> Iterator[tuple[Node, Node | None]]:
 def _class_around(node: Node) -> str:
     around = _enclosing(node, _CLASSES)
     name = around.child_by_field_name("name") if around is not None else None
-    if name is None and around is not None and around.parent is not None and around.parent.type == "type_definition":
-        name = around.parent.child_by_field_name("declarator")
+    parent = around.parent if name is None and around is not None else None
+    if parent is not None and parent.type == "type_definition":
+        name = parent.child_by_field_name("declarator")
+    elif parent is not None:
+        # One without a name is called as its first object.
+        name = next((variable for variable, _ in declared(parent)), None)
     return text_of(name) if name is not None else ""
 
 

@@ -18,8 +18,8 @@ from amalthea_uros.source.locks import LOCKS
 from amalthea_uros.source.loops import SENDS, add_senders, add_spins, note_lock
 from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.messages import defined_types
-from amalthea_uros.source.platform import platform_of
-from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
+from amalthea_uros.source.platform import OF_ARDUINO, platform_of
+from amalthea_uros.source.ports import FORMS, SETTERS, WORD, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
 from amalthea_uros.source.sleeps import SLEEPS
 from amalthea_uros.source.walk import ENTRIES, CodeWalk, FunctionCall
@@ -127,7 +127,9 @@ def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:
 def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
     """The threads, and for each executor the one whose entry leads to its spin."""
     is_idf = any(b'"freertos/' in file.text or b"<freertos/" in file.text for file, _ in walk.program.files)
-    threads = [thread_of(call, walk, not is_idf) for call in walk.calls if call.name in FORMS]
+    # Arduino has FreeRTOS of ESP-IDF on some boards, and a library for it on others.
+    unit = 1 if is_idf or (facts.port in OF_ARDUINO and facts.ticks_are_stated) else None if facts.port in OF_ARDUINO else WORD
+    threads = [thread_of(call, walk, unit) for call in walk.calls if call.name in FORMS]
     facts.threads = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
     for call in walk.calls:
         given = call.argument(0)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
+from operator import eq, ge, gt, le, lt, ne
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass, field
@@ -27,6 +29,11 @@ _FACTORS = {
 }
 #: The binding of the object whose method is called.
 THIS = "this"
+#: Functions that write a text to a buffer -> the position of its format; and those that make a text of a value.
+_PRINTS = {"snprintf": 2, "sprintf": 1}
+_TEXTS = ("String", "string", "to_string")
+_FORMAT = re.compile(r"(%(?:%|\d*(?:l|ll|h|hh|z)?[dius]))")
+_COMPARISONS = {"==": eq, "!=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}
 _WRAPPERS = ("parenthesized_expression", "cast_expression", "pointer_expression")
 
 
@@ -84,7 +91,9 @@ class Expression:
         if len(returns) != 1 or statements[-1:] != returns or not returns[0].named_children:
             return self
         given = text_of(returns[0].named_children[0])
-        if len(statements) > 1 and (not given.startswith("&") or given[1:].strip() in function.locals):
+        name = given.removeprefix("&").strip()
+        stays = re.search(rf"\bstatic\b[^;]*\b{re.escape(name)}\b", text_of(function.body)) is not None
+        if len(statements) > 1 and not stays and (not given.startswith("&") or name in function.locals):
             return self
         bindings: dict[str, Binding] = dict(zip(function.parameters, map(self.at, arguments), strict=False))
         called_as = self.node.child_by_field_name("function")
@@ -313,7 +322,7 @@ class Expression:
             return None
         size = next(iter(sizes))
         if size:
-            parsed = parse_expression(size)
+            parsed = parse_expression(size, is_c=False)
             return own.at(parsed).number if parsed is not None else None
         values = own.resolved.node
         return len(elements_of(values)) if values.type == "initializer_list" else None
@@ -322,6 +331,8 @@ class Expression:
     def string(self) -> str | None:
         """The text that it stands for, None if that is not constant."""
         own = self.resolved
+        if own.node.type in ("identifier", "binary_expression", "call_expression") and own.depth <= _MAX_DEPTH:
+            return own._made_text()
         if own.node.type == "concatenated_string":
             strings = [own.at(child).string for child in own.node.named_children]
             known = [each for each in strings if each is not None]
@@ -335,6 +346,41 @@ class Expression:
             parts.append(text_of(child))
         return "".join(parts)
 
+    def _made_text(self) -> str | None:
+        """The text that a buffer gets from `snprintf`, or that parts are joined to."""
+        if self.node.type == "identifier":
+            return self._printed()
+        if self.node.type == "binary_expression":
+            parts = [self.at(child)._as_text() for child in self.node.named_children]
+            is_sum = text_of(self.node.children[1]) == "+"
+            return f"{parts[0]}{parts[1]}" if is_sum and len(parts) == 2 and None not in parts else None
+        name, arguments = called(self.node)
+        function = self.node.child_by_field_name("function")
+        if name.endswith(".c_str") and function is not None and (text := function.child_by_field_name("argument")) is not None:
+            return self.at(text).string
+        return self.at(arguments[0])._as_text() if name.rpartition("::")[2] in _TEXTS and len(arguments) == 1 else None
+
+    def _as_text(self) -> str | None:
+        number = self.number
+        return self.string if number is None else str(number)
+
+    def _printed(self) -> str | None:
+        """What the last call of `snprintf` before this place in the same function writes to a buffer."""
+        calls = [
+            arguments
+            for node in (descendants(self.function.body) if self.function is not None else ())
+            if node.type == "call_expression" and node.start_byte < self.node.start_byte
+            for name, arguments in [called(node)]
+            if name.rpartition("::")[2] in _PRINTS and arguments and text_of(arguments[0]) == self.text
+            for arguments in [arguments[_PRINTS[name.rpartition("::")[2]] :]]
+        ]
+        form = self.at(calls[-1][0]).string if calls and calls[-1] else None
+        if form is None:
+            return None
+        values = iter([self.at(each)._as_text() for each in calls[-1][1:]])
+        parts = [_formatted(part, values) for part in _FORMAT.split(form)]
+        return "".join(each for each in parts if each is not None) if None not in parts else None
+
     @property
     def number(self) -> int | None:
         """The whole number that it stands for, None if that is not constant."""
@@ -347,9 +393,11 @@ class Expression:
             return bound if isinstance(bound, int) else None
         if node.type == "number_literal":
             return literal(text_of(node))
+        if node.type in ("true", "false"):
+            return int(node.type == "true")
         if node.type == "unary_expression" and (inner := node.child_by_field_name("argument")) is not None:
             value = own.at(inner).number
-            return None if value is None else {"-": -value, "+": value}.get(text_of(node.children[0]))
+            return None if value is None else {"-": -value, "+": value, "!": int(not value)}.get(text_of(node.children[0]))
         if node.type in ("binary_expression", "call_expression") and (array := counted_array(node)) is not None:
             return own.at(array).length
         if node.type == "binary_expression":
@@ -403,6 +451,16 @@ def literal(text: str) -> int | None:
     return int(real) if abs(real) < _GREATEST and real == int(real) else None
 
 
+def _formatted(part: str, values: Iterator[str | None]) -> str | None:
+    """A part of a format, with the next value if it is a conversion."""
+    if _FORMAT.fullmatch(part) is None:
+        return part
+    if part == "%%":
+        return "%"
+    value, width = next(values, None), part[1:].rstrip("diuslhz")
+    return value.rjust(int(width or 0), "0" if width.startswith("0") else " ") if value is not None else None
+
+
 def _calculated(first: int, operator: str, second: int) -> int | None:
     match operator:
         case "+":
@@ -415,6 +473,8 @@ def _calculated(first: int, operator: str, second: int) -> int | None:
             return abs(first) // abs(second) * (1 if (first < 0) is (second < 0) else -1)
         case "%" if second > 0 and first >= 0:
             return first % second
+        case "==" | "!=" | "<" | "<=" | ">" | ">=":
+            return int(_COMPARISONS[operator](first, second))
         case "<<" if 0 <= second < 64:
             return first << second
         case ">>" if 0 <= second < 64:

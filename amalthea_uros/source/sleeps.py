@@ -8,7 +8,7 @@ from typing import NamedTuple
 from amalthea_uros.source.facts import CodeFacts
 from amalthea_uros.source.ports import MICROSECOND, MILLISECOND, SECOND
 from amalthea_uros.source.scope import Expression, called
-from amalthea_uros.source.walk import FunctionCall
+from amalthea_uros.source.walk import BUSY_LOOP, FunctionCall
 from amalthea_uros.units import Time, time_text
 
 #: Functions that wait without sleeping: `HAL_Delay` of the HAL of STM32 reads its tick until it is over.
@@ -49,7 +49,7 @@ _UNTIL = (
     "sleep_until",
 )
 
-SLEEPS = frozenset({*_UNITS, *_TICKS, *_UNTIL, *_BLOCKING, _RENESAS})
+SLEEPS = frozenset({*_UNITS, *_TICKS, *_UNTIL, *_BLOCKING, _RENESAS, BUSY_LOOP})
 
 #: Macros and constructors of durations -> unit of their argument.
 _DURATIONS = {
@@ -137,6 +137,8 @@ class WaitCall(NamedTuple):
 
 def wait_of(call: FunctionCall, facts: CodeFacts) -> WaitCall:
     """The wait of a call that seems to let a thread sleep."""
+    if call.name == BUSY_LOOP:
+        return WaitCall(None, is_busy=True, waits_for="a loop that waits for a time")
     if call.name in _BLOCKING:
         timeout = call.argument(_BLOCKING[call.name])
         is_poll = timeout is not None and (timeout.name in _NO_WAIT or timeout.number == 0 or _duration(timeout) == 0)

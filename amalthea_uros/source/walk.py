@@ -26,6 +26,15 @@ Branch: TypeAlias = tuple[Mark, Mark]
 _MAX_DEPTH = 350
 #: Iterations of a loop that are followed one by one, because they create something each.
 _MAX_ITERATIONS = 64
+#: What a loop is called that waits busily for a time, and the functions that read a clock.
+BUSY_LOOP = "while"
+CLOCKS = frozenset(
+    ("millis", "micros", "HAL_GetTick", "xTaskGetTickCount", "osKernelGetTickCount", "k_uptime_get", "k_uptime_get_32")
+    + ("esp_timer_get_time", "time_us_64", "time_us_32", "get_absolute_time", "uxr_millis", "rmw_uros_epoch_millis")
+)
+#: The branch of a choice that what follows a branch that leaves the block is in.
+_AFTER: Mark = ("", 0)
+_LITERALS = ("true", "false", "number_literal")
 _LOOPS = ("while_statement", "do_statement", "for_statement", "for_range_loop")
 _CHOICES = ("if_statement", "switch_statement", "conditional_expression")
 #: Calls of functions of the sources that are followed; those of functions that call others twice grow without limit.
@@ -69,8 +78,8 @@ class FunctionCall:
         return any(branches.get(choice, branch) != branch for choice, branch in other.conditions)
 
     def always_with(self, other: FunctionCall) -> bool:
-        """Whether it is made whenever the code of another call is reached."""
-        return set(self.conditions) <= set(other.conditions)
+        """Whether it is made whenever the code of another call is reached, unless that is left early."""
+        return {each for each in self.conditions if each[1] != _AFTER} <= set(other.conditions)
 
     def argument(self, index: int) -> Expression | None:
         """An argument, None if there are fewer."""
@@ -120,7 +129,8 @@ class CodeWalk:
             group[:] = [function for function in group if not self._is_inactive(function)]
         for function in self.program.every_function():
             is_entry = not function.owner and function.name in ENTRIES
-            if (is_entry or function.name not in self._relevant.called) and function in self._relevant.functions:
+            is_root = is_entry or (function.name not in self._relevant.called and not function.is_macro)
+            if is_root and function in self._relevant.functions:
                 self.function(function)
         # Lambdas that are the code of threads; what they call is called by others only there.
         while self._started:
@@ -164,12 +174,22 @@ class CodeWalk:
             self._loop(node, context)
         elif node.type in _CHOICES:
             self._choice(node, context)
+        elif node.type in ("compound_statement", "case_statement"):
+            self._block(node, context)
         elif node.type == "lambda_expression":
             self._lambda(node, context)
         elif node.type == "function_definition" or (node.type == "field_declaration_list" and context.function is not None):
             return
         else:
             self._children(node, context)
+
+    def _block(self, node: Node, context: _WalkPosition) -> None:
+        """The statements of a block; those after a branch that leaves it are not made with that branch."""
+        for child in node.named_children:
+            self._visit(child, context)
+            branch = child.child_by_field_name("consequence") if child.type == "if_statement" else None
+            if branch is not None and child.child_by_field_name("alternative") is None and _leaves(branch):
+                context = replace(context, conditions=(*context.conditions, (_mark(child, context), _AFTER)))
 
     def _stop(self, node: Node, context: _WalkPosition) -> None:
         reason = "there is too much code" if min(self._left, self._entries) < 0 else "the code is nested too deeply"
@@ -205,6 +225,8 @@ class CodeWalk:
         if body is None:
             return
         condition = node.child_by_field_name("condition")
+        if condition is not None and node.type != "for_statement" and self._is_timed(condition, body):
+            self._add(BUSY_LOOP, (), node, context)
         if node.type == "do_statement" and condition is not None and self._expression(condition, context).number == 0:
             # The usual form of a macro, or of a block that `break` leaves.
             self._visit(body, context)
@@ -216,6 +238,11 @@ class CodeWalk:
                 self._visit(body, replace(context, bindings={**context.bindings, name: value}))
         else:
             self._visit(body, replace(context, loops=(*context.loops, _mark(node, context))))
+
+    def _is_timed(self, condition: Node, body: Node) -> bool:
+        """Whether a loop does nothing that matters until a clock shows a time."""
+        inner = set(_called_names(body))
+        return not inner & self._relevant.called_with_effect and any(name in CLOCKS for name in _called_names(condition))
 
     def _elements(self, node: Node, context: _WalkPosition) -> tuple[str, Sequence[Binding]] | None:
         """The variable of a loop over an array, and the elements."""
@@ -252,11 +279,28 @@ class CodeWalk:
         condition = node.child_by_field_name("condition")
         if condition is not None:
             self._visit(condition, context)
+        if condition is not None and node.type != "switch_statement" and (decided := self._decided(condition, context)) is not None:
+            taken = node.child_by_field_name("consequence" if decided else "alternative")
+            if taken is not None:
+                self._visit(taken, context)
+            return
         body = node.child_by_field_name("body") if node.type == "switch_statement" else None
         for child in (body or node).named_children:
             if condition is None or child.id != condition.id:
                 branch = _mark(node, context), _mark(child, context)
                 self._visit(child, replace(context, conditions=(*context.conditions, branch)))
+
+    def _decided(self, condition: Node, context: _WalkPosition) -> bool | None:
+        """Whether a condition holds that only depends on constants, counters and what parameters are given; None if unknown."""
+        condition = condition.child_by_field_name("value") or condition
+        for each in descendants(condition):
+            if each.type in ("identifier", "field_expression", "subscript_expression", "pointer_expression"):
+                bound = context.bindings.get(text_of(each))
+                is_value = isinstance(bound, int) or (bound is not None and bound.node.type in _LITERALS)
+                if each.type != "identifier" or not (is_value or self.program.macros.get(text_of(each))):
+                    return None
+        number = self._expression(condition, context).number
+        return None if number is None else bool(number)
 
     def _lambda(self, node: Node, context: _WalkPosition) -> None:
         """Code that is called later; what creates a callback of it finds it by its place."""
@@ -283,11 +327,13 @@ class CodeWalk:
             return
         if name in self._names:
             self._started += [self.lambdas[text] for given in arguments if (text := text_of(given)) in self.lambdas]
-        plain = name.removeprefix("::").removeprefix("std::").rpartition("this->")[2]
+        self._add(name.removeprefix("::").removeprefix("std::").rpartition("this->")[2], expressions, node, context)
+
+    def _add(self, name: str, arguments: tuple[Expression, ...], node: Node, context: _WalkPosition) -> None:
         self.calls.append(
             FunctionCall(
-                plain,
-                expressions,
+                name,
+                arguments,
                 location_of(context.file, node),
                 context.stack[0] if context.stack else None,
                 context.function,
@@ -352,10 +398,12 @@ class Relevance:
     ----------
     functions : those that lead to calls that matter
     called : names of functions that others call
+    called_with_effect : names of functions that matter, and of those that lead to them
     """
 
     functions: frozenset[CodeFunction]
     called: frozenset[str]
+    called_with_effect: frozenset[str]
 
 
 def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance:
@@ -373,13 +421,21 @@ def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance
             if caller not in found:
                 found.add(caller)
                 waiting.append(caller)
-    return Relevance(frozenset(found), frozenset(callers))
+    every = {name for inner in calls.values() for name in inner}
+    effects = {name for name in every if name.startswith(_RELEVANT) or name in names} | {each.name for each in found}
+    return Relevance(frozenset(found), frozenset(callers), frozenset(effects))
 
 
 def _called_names(body: Node) -> Iterator[str]:
     for node in descendants(body):
         if node.type == "call_expression":
             yield called(node)[0].rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
+
+
+def _leaves(branch: Node) -> bool:
+    """Whether a branch ends with a statement that leaves the block around it."""
+    last = branch.named_children[-1] if branch.type == "compound_statement" and branch.named_children else branch
+    return last.type in ("return_statement", "break_statement", "continue_statement")
 
 
 def _mark(node: Node, context: _WalkPosition) -> Mark:
