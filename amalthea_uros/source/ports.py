@@ -34,9 +34,10 @@ _FIRST_CMSIS_PRIORITIES = {name: number for number, name in enumerate(_CMSIS_PRI
 
 
 class _ThreadForm(NamedTuple):
-    """Positions of the arguments of a function that creates a thread; None: it has none."""
+    """Positions of the arguments of a function that creates a thread, such as what its entry is given; None: it has none."""
 
     entry: int
+    argument: int
     name: int | None = None
     stack: int | None = None
     priority: int | None = None
@@ -46,14 +47,15 @@ class _ThreadForm(NamedTuple):
 
 
 FORMS: Mapping[str, _ThreadForm] = {
-    "xTaskCreate": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
-    "xTaskCreateStatic": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
-    "xTaskCreatePinnedToCore": _ThreadForm(0, 1, 2, 4, 6, rtos="freertos"),
-    "osThreadNew": _ThreadForm(0, attributes=2, rtos="freertos"),
-    "osThreadDef": _ThreadForm(1, 0, 4, 2, rtos="freertos"),
-    "K_THREAD_DEFINE": _ThreadForm(2, 0, 1, 6, rtos="zephyr"),
-    "k_thread_create": _ThreadForm(3, 0, 2, 7, rtos="zephyr"),
-    "pthread_create": _ThreadForm(2, 0),
+    "xTaskCreate": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
+    "xTaskCreateStatic": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
+    "xTaskCreatePinnedToCore": _ThreadForm(0, 3, 1, 2, 4, 6, rtos="freertos"),
+    "osThreadNew": _ThreadForm(0, 1, attributes=2, rtos="freertos"),
+    # What it is given comes with osThreadCreate.
+    "osThreadDef": _ThreadForm(1, 5, 0, 4, 2, rtos="freertos"),
+    "K_THREAD_DEFINE": _ThreadForm(2, 3, 0, 1, 6, rtos="zephyr"),
+    "k_thread_create": _ThreadForm(3, 4, 0, 2, 7, rtos="zephyr"),
+    "pthread_create": _ThreadForm(2, 3, 0),
 }
 
 

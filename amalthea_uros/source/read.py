@@ -52,7 +52,7 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
         program.macros[_SERVER_HANDLES].add(str(parameter_services(build.ros.value if build.ros is not None else None)))
     for name, stated in (_CONSTANTS | build.macros).items():
         program.macros[name].add(stated)
-    walk = CodeWalk(program, _NAMES)
+    walk = CodeWalk(program, _NAMES, {name: (form.entry, form.argument) for name, form in FORMS.items()})
     walk.all()
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program), *build.findings]
     facts.ros, facts.board, facts.clock = build.ros, build.board, build.clock

@@ -190,8 +190,11 @@ class Expression:
         node, place = self.program.values.get(key, (None, None))
         if node is None or place is None or name in self.program.changed or self.depth > _MAX_DEPTH:
             return key
-        if node.type not in ("pointer_expression", "call_expression") or (
-            node.type == "pointer_expression" and not text_of(node).startswith("&")
+        plain = node.child_by_field_name("value") if node.type == "cast_expression" else node
+        is_parameter = plain is not None and isinstance(self.bindings.get(text_of(plain)), Expression) and place is self.function
+        if not is_parameter and (
+            node.type not in ("pointer_expression", "call_expression")
+            or (node.type == "pointer_expression" and not text_of(node).startswith("&"))
         ):
             return key
         function, file = (place, place.file) if isinstance(place, CodeFunction) else (None, place)

@@ -108,8 +108,17 @@ class CodeWalk:
     findings : code that is nested too deeply, or too much
     """
 
-    def __init__(self, program: CodeProgram, names: frozenset[str]) -> None:
+    def __init__(self, program: CodeProgram, names: frozenset[str], threads: Mapping[str, tuple[int, int]]) -> None:
+        """Begin.
+
+        Parameters
+        ----------
+        names : of functions that matter, besides those of micro-ROS
+        threads : of functions that start threads, the positions of their entry and of what that is given
+        """
         self.program = program
+        self._threads = threads
+        self._given: dict[str, Expression] = {}
         self.calls: list[FunctionCall] = []
         self.seen: set[tuple[str, int]] = set()
         self.inactive: set[tuple[str, int, int]] = set()
@@ -127,11 +136,16 @@ class CodeWalk:
             self._children(root, _WalkPosition(file, None, {}))
         for group in self.program.functions.values():
             group[:] = [function for function in group if not self._is_inactive(function)]
+        entries = dict.fromkeys(self._thread_entries())
         for function in self.program.every_function():
             is_entry = not function.owner and function.name in ENTRIES
             is_root = is_entry or (function.name not in self._relevant.called and not function.is_macro)
-            if is_root and function in self._relevant.functions:
+            if is_root and function in self._relevant.functions and function.name not in entries:
                 self.function(function)
+        for name in entries:
+            for function in self.program.functions.get(name, ()):
+                if function in self._relevant.functions:
+                    self.function(function)
         # Lambdas that are the code of threads; what they call is called by others only there.
         while self._started:
             self.function(self._started.pop(0))
@@ -141,8 +155,17 @@ class CodeWalk:
         return any(path == other and start <= position < end for other, start, end in self.inactive)
 
     def function(self, function: CodeFunction) -> None:
-        """Walk through a function."""
-        self._visit(function.body, _WalkPosition(function.file, function, {}, (function,)))
+        """Walk through a function; the code of a thread has what it is given."""
+        given = self._given.get(function.name)
+        bindings: dict[str, Binding] = {function.parameters[0]: given} if given is not None and function.parameters else {}
+        self._visit(function.body, _WalkPosition(function.file, function, bindings, (function,)))
+
+    def _thread_entries(self) -> Iterator[str]:
+        for _, root in self.program.files:
+            for node in descendants(root):
+                name, arguments = called(node) if node.type == "call_expression" else ("", [])
+                if name in self._threads and self._threads[name][0] < len(arguments):
+                    yield text_of(arguments[self._threads[name][0]]).lstrip("&")
 
     def calls_from(self, function: CodeFunction) -> list[FunctionCall]:
         """The calls on the paths that begin with a function."""
@@ -325,6 +348,9 @@ class CodeWalk:
             if callee not in context.stack and callee in self._relevant.functions:
                 self._enter(callee, expressions, self._holder(node, callee, context), context)
             return
+        if name in self._threads and self._threads[name][1] < len(expressions):
+            entry, argument = (expressions[position] for position in self._threads[name])
+            self._given.setdefault(entry.name, argument)
         if name in self._names:
             self._started += [self.lambdas[text] for given in arguments if (text := text_of(given)) in self.lambdas]
         self._add(name.removeprefix("::").removeprefix("std::").rpartition("this->")[2], expressions, node, context)
