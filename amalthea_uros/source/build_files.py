@@ -85,7 +85,9 @@ def _settings(file: SourceFile, section: str) -> Iterator[tuple[str, Stated]]:
 def _kconfig(facts: BuildFacts, file: SourceFile) -> Mapping[str, Stated]:
     """The settings of a file of Kconfig, which are macros in the code: a switch that is on is 1."""
     settings = dict(_settings(file, ""))
-    facts.macros |= {name: "1" if stated.value == "y" else stated.value for name, stated in settings.items() if stated.value != "n"}
+    facts.macros |= {
+        name: "1" if stated.value == "y" else stated.value for name, stated in settings.items() if stated.value != "n"
+    }
     return settings
 
 

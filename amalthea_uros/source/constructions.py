@@ -29,7 +29,7 @@ def made_class(node: Node) -> str:
     return text_of(kind).partition("<")[0].rpartition("::")[2] if kind is not None else ""
 
 
-def arguments_of(node: Node) -> list[Node] | None:
-    """The arguments that an object is made with; None if an expression makes none."""
+def arguments_of(node: Node) -> list[Node]:
+    """The arguments that an object is made with; none if an expression does not make one."""
     given = node if node.type in ("argument_list", "initializer_list") else node.child_by_field_name("arguments")
-    return [child for child in given.named_children if child.type != "comment"] if given is not None else None
+    return [child for child in given.named_children if child.type != "comment"] if given is not None else []

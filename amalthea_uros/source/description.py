@@ -44,7 +44,6 @@ _MESSAGE: Mapping[str, str] = {"message_size": ""}
 _SERVICE: Mapping[str, str] = {"request_size": "Request", "response_size": "Response"}
 _ACTION: Mapping[str, str] = {"goal_size": "Goal", "result_size": "Result", "feedback_size": "Feedback"}
 _ON, _OFF = ("on", "1", "true"), ("off", "0", "false")
-_NOT_ARRIVING = (CodeEntityKind.TIMER, CodeEntityKind.GUARD_CONDITION)
 
 
 def description_text(facts: CodeFacts, name: str, board: str | None, options: Mapping[str, str]) -> str:
@@ -339,8 +338,9 @@ def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: Code
     yield from _content(entity, facts)
     if entity.kind is CodeEntityKind.TIMER:
         yield f"period: {_time(entity.period)}{_at(entity.place)}"
-    elif entity.kind not in _NOT_ARRIVING:
-        yield f"rate: {GAP} # how often messages arrive at most"
+    else:
+        what = "it is triggered" if entity.kind is CodeEntityKind.GUARD_CONDITION else "messages arrive"
+        yield f"rate: {GAP} # how often {what} at most"
     if handle.always:
         yield "invocation: always"
     if executor != next(iter(names.executors.values())):

@@ -184,7 +184,8 @@ def _counted(node: Node) -> str:
 def _note_function(program: CodeProgram, file: SourceFile, node: Node) -> None:
     declarator, body = node.child_by_field_name("declarator"), node.child_by_field_name("body")
     while declarator is not None and declarator.type != "function_declarator":
-        declarator = declarator.child_by_field_name("declarator")
+        # A function that returns a reference has no field for what is around its declarator.
+        declarator = declarator.child_by_field_name("declarator") or next(iter(declarator.named_children), None)
     named = declarator.child_by_field_name("declarator") if declarator is not None else None
     if declarator is None or named is None or body is None:
         return

@@ -191,7 +191,9 @@ class Expression:
         if node is None or place is None or name in self.program.changed or self.depth > _MAX_DEPTH:
             return key
         plain = node.child_by_field_name("value") if node.type == "cast_expression" else node
-        is_parameter = plain is not None and isinstance(self.bindings.get(text_of(plain)), Expression) and place is self.function
+        is_parameter = (
+            plain is not None and isinstance(self.bindings.get(text_of(plain)), Expression) and place is self.function
+        )
         if not is_parameter and (
             node.type not in ("pointer_expression", "call_expression")
             or (node.type == "pointer_expression" and not text_of(node).startswith("&"))
@@ -291,17 +293,18 @@ class Expression:
         if isinstance(holder, Expression):
             return holder.resolved._made(owner, name)
         only = [variable for variable, kind in self.program.classes.items() if kind == owner]
-        if len(only) != 1 or self.program.number_of_objects(owner) > 1 or only[0] not in self.program.values:
+        if len(only) != 1 or self.program.number_of_objects(owner) > 1:
             return None
-        node, place = self.program.values[only[0]]
+        node, place = self.program.values.get(only[0], (self.node, self.file))
         file = place.file if isinstance(place, CodeFunction) else place
         return Expression(self.program, node, file, depth=self.depth + 1)._made(owner, name)
 
     def _made(self, owner: str, member: str) -> Expression | None:
         """What the constructor of a class gives a member of an object, which is made with the arguments of this expression."""
         constructors, given = self.program.constructors.get(owner, ()), self.program.constructed.get(owner, {}).get(member)
+        # Where they are unknown, what does not depend on them is known all the same.
         arguments = arguments_of(self.node)
-        if len(constructors) != 1 or given is None or arguments is None or self.depth > _MAX_DEPTH:
+        if len(constructors) != 1 or given is None or self.depth > _MAX_DEPTH:
             return None
         constructor = constructors[0]
         bindings: dict[str, Binding] = dict(zip(constructor.parameters, map(self.at, arguments), strict=False))

@@ -29,8 +29,10 @@ _MAX_ITERATIONS = 64
 #: What a loop is called that waits busily for a time, and the functions that read a clock.
 BUSY_LOOP = "while"
 CLOCKS = frozenset(
-    ("millis", "micros", "HAL_GetTick", "xTaskGetTickCount", "osKernelGetTickCount", "k_uptime_get", "k_uptime_get_32")
-    + ("esp_timer_get_time", "time_us_64", "time_us_32", "get_absolute_time", "uxr_millis", "rmw_uros_epoch_millis")
+    [
+        *("millis", "micros", "HAL_GetTick", "xTaskGetTickCount", "osKernelGetTickCount", "k_uptime_get", "k_uptime_get_32"),
+        *("esp_timer_get_time", "time_us_64", "time_us_32", "get_absolute_time", "uxr_millis", "rmw_uros_epoch_millis"),
+    ]
 )
 #: The branch of a choice that what follows a branch that leaves the block is in.
 _AFTER: Mark = ("", 0)
@@ -302,7 +304,11 @@ class CodeWalk:
         condition = node.child_by_field_name("condition")
         if condition is not None:
             self._visit(condition, context)
-        if condition is not None and node.type != "switch_statement" and (decided := self._decided(condition, context)) is not None:
+        if (
+            condition is not None
+            and node.type != "switch_statement"
+            and (decided := self._decided(condition, context)) is not None
+        ):
             taken = node.child_by_field_name("consequence" if decided else "alternative")
             if taken is not None:
                 self._visit(taken, context)
@@ -349,8 +355,8 @@ class CodeWalk:
                 self._enter(callee, expressions, self._holder(node, callee, context), context)
             return
         if name in self._threads and self._threads[name][1] < len(expressions):
-            entry, argument = (expressions[position] for position in self._threads[name])
-            self._given.setdefault(entry.name, argument)
+            entry, given = self._threads[name]
+            self._given.setdefault(expressions[entry].name, expressions[given])
         if name in self._names:
             self._started += [self.lambdas[text] for given in arguments if (text := text_of(given)) in self.lambdas]
         self._add(name.removeprefix("::").removeprefix("std::").rpartition("this->")[2], expressions, node, context)
