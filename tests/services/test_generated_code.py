@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+from pathlib import Path
 
 import pytest
 from support import ROOT
@@ -60,6 +61,8 @@ PORTS = {
     "pico-sdk": ("", "{spin_some: 10 ms, sleep: 0.25 ms}"),
     "nuttx": ("os: {rtos: nuttx}", "{spin: 50 ms}"),
 }
+#: What the code calls, with its parameters.
+STUBS = Path(__file__).parent / "rclc_stubs.h"
 WITH_THREADS = ("espidf", "zephyr", "cubemx", "renesas", "freertos")
 
 
@@ -165,8 +168,13 @@ def test_the_loop_that_connects_again_has_a_ping_more(tmp_path):
     assert "IMP026" not in {each.rule for each in import_code([tmp_path / "code"]).findings}
 
 
-@pytest.mark.parametrize(("port", "options"), 
-    [*((port, {}) for port in PORTS), ("nuttx", {"stamps": True}), *((port, {"reconnect": True}) for port in WITHOUT_THREADS)],
+@pytest.mark.parametrize(
+    ("port", "options"),
+    [
+        *((port, {}) for port in PORTS),
+        ("nuttx", {"stamps": True}),
+        *((port, {"reconnect": True}) for port in ("arduino", "pico-sdk")),
+    ],
 )
 def test_the_code_compiles(port, options, tmp_path):
     generate(described(port, tmp_path), tmp_path / "code", code=True, **options)
@@ -187,7 +195,19 @@ def test_the_code_compiles(port, options, tmp_path):
     (tmp_path / "include" / "rmw_microxrcedds_c" / "config.h").write_text(config)
     (tmp_path / "stubs.h").write_text(stubs)
     language = ["-x", "c", "-std=gnu11"] if source.suffix == ".c" else ["-x", "c++", "-std=gnu++17"]
-    command = ["gcc", *language, "-include", tmp_path / "stubs.h", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", tmp_path / "include", source]
+    command = [
+        "gcc",
+        *language,
+        "-include",
+        tmp_path / "stubs.h",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-fsyntax-only",
+        "-I",
+        tmp_path / "include",
+        source,
+    ]
     run = subprocess.run(command, capture_output=True, check=False, text=True)
     assert run.stderr == ""
 
