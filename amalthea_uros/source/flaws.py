@@ -218,7 +218,8 @@ def _sessions(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     if len(users) > 1 and facts.lock is None and (option is None or option.value.upper() not in ("ON", "1", "TRUE")):
         sending = (calls[0] for calls in users.values() if all(call.name not in SPINS for call in calls))
         place = next(sending, next(iter(users.values()))[0]).place
-        message = f"{' and '.join(map(repr, users))} use one session of the middleware, which nothing locks in these files"
+        names = sorted(users, key=lambda name: all(call.name not in SPINS for call in users[name]))
+        message = f"{' and '.join(map(repr, names))} use one session of the middleware, which nothing locks in these files"
         advice = "Build with UCLIENT_PROFILE_MULTITHREAD=ON, or publish in callbacks of the executor."
         yield Finding("IMP023", Severity.WARNING, message, place, advice)
 

@@ -73,7 +73,7 @@ def session_users(facts: CodeFacts, walk: CodeWalk) -> dict[str, list[FunctionCa
     return users
 
 
-def note_lock(facts: CodeFacts, walk: CodeWalk) -> None:
+def add_lock(facts: CodeFacts, walk: CodeWalk) -> None:
     """Note a lock that every thread holds whenever it uses the session."""
     calls = [call for each in session_users(facts, walk).values() for call in each]
     held = [held_at(call, walk.calls) for call in calls]

@@ -212,7 +212,7 @@ def _note_members(program: CodeProgram, file: SourceFile, node: Node) -> None:
 
 
 def _given_to_members(constructor: Node, body: Node) -> dict[str, Node]:
-    """What a constructor gives members of its class, in the list before its body, or by statements of it."""
+    """The values that a constructor gives members of its class, in the list before its body, or by statements of it."""
     given = {}
     for part in constructor.named_children:
         for each in part.named_children if part.type == "field_initializer_list" else ():

@@ -15,7 +15,7 @@ from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeFacts, Code
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import WITH_HANDLES, flaws, not_understood
 from amalthea_uros.source.locks import LOCKS
-from amalthea_uros.source.loops import SENDS, add_senders, add_spins, note_lock
+from amalthea_uros.source.loops import SENDS, add_lock, add_senders, add_spins
 from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.messages import defined_types
 from amalthea_uros.source.platform import OF_ARDUINO, platform_of
@@ -65,7 +65,7 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     _note_main_thread(facts, walk, build)
     _note_publications(facts, walk)
     add_senders(facts, walk.calls)
-    note_lock(facts, walk)
+    add_lock(facts, walk)
     facts.transport = transport_of(walk.calls, program, build.transport, facts.port, name)
     _note_options(facts, sources, build, name)
     facts.findings += [*not_understood(walk, facts), *flaws(facts, walk), *message_flaws(facts, program)]

@@ -283,7 +283,7 @@ class Expression:
         return values.at(value).resolved if value is not None else None
 
     def _own_member(self, name: str) -> Expression | None:
-        """What the object whose method it is in was made with for a member of it."""
+        """The value that the object whose method it is in was made with for a member of it."""
         owner = self.function.owner if self.function is not None else ""
         if not owner or name in self.program.changed or name not in self.program.members.get(owner, ()):
             return None
@@ -300,7 +300,7 @@ class Expression:
         return Expression(self.program, node, file, depth=self.depth + 1)._made(owner, name)
 
     def _made(self, owner: str, member: str) -> Expression | None:
-        """What the constructor of a class gives a member of an object, which is made with the arguments of this expression."""
+        """The value that the constructor of a class gives a member of an object, made with the arguments of this expression."""
         constructors, given = self.program.constructors.get(owner, ()), self.program.constructed.get(owner, {}).get(member)
         # Where they are unknown, what does not depend on them is known all the same.
         arguments = arguments_of(self.node)
@@ -371,7 +371,7 @@ class Expression:
         return self.string if number is None else str(number)
 
     def _printed(self) -> str | None:
-        """What the last call of `snprintf` before this place in the same function writes to a buffer."""
+        """The text that the last call of `snprintf` before this place in the same function writes to a buffer."""
         calls = [
             arguments
             for node in (descendants(self.function.body) if self.function is not None else ())
