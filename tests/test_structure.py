@@ -48,7 +48,7 @@ LINES = {
     "timing": 5626,
     "trace": 5057,
     "units": 206,
-    "uros": 7443,
+    "uros": 7456,
     "validate": 3660,
     "xmi": 8542,
 }

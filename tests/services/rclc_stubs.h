@@ -40,6 +40,8 @@ typedef void (* rclc_subscription_callback_t)(const void *);
 typedef void (* rclc_service_callback_t)(const void *, void *);
 typedef void (* rclc_client_callback_t)(const void *);
 typedef void (* rclc_gc_callback_t)(void);
+typedef rcl_ret_t (* rclc_action_server_handle_goal_callback_t)(rclc_action_goal_handle_t *, void *);
+typedef bool (* rclc_action_server_handle_cancel_callback_t)(rclc_action_goal_handle_t *, void *);
 typedef bool (* rclc_parameter_callback_t)(const Parameter *, const Parameter *, void *);
 typedef bool (* rclc_executor_trigger_t)(rclc_executor_handle_t *, unsigned int, void *);
 
@@ -88,6 +90,9 @@ rcl_ret_t rclc_executor_add_service(rclc_executor_t *, rcl_service_t *, void *, 
 rcl_ret_t rclc_executor_add_client(rclc_executor_t *, rcl_client_t *, void *, rclc_client_callback_t);
 rcl_ret_t rclc_executor_add_guard_condition(rclc_executor_t *, rcl_guard_condition_t *, rclc_gc_callback_t);
 rcl_ret_t rclc_executor_add_parameter_server(rclc_executor_t *, rclc_parameter_server_t *, rclc_parameter_callback_t);
+rcl_ret_t rclc_action_server_init_default(rclc_action_server_t *, rcl_node_t *, rclc_support_t *, const rosidl_action_type_support_t *, const char *);
+rcl_ret_t rclc_action_server_fini(rclc_action_server_t *, rcl_node_t *);
+rcl_ret_t rclc_executor_add_action_server(rclc_executor_t *, rclc_action_server_t *, size_t, void *, size_t, rclc_action_server_handle_goal_callback_t, rclc_action_server_handle_cancel_callback_t, void *);
 rcl_ret_t rclc_executor_spin(rclc_executor_t *);
 rcl_ret_t rclc_executor_spin_some(rclc_executor_t *, const uint64_t);
 rcl_ret_t rclc_executor_spin_period(rclc_executor_t *, const uint64_t);
@@ -98,6 +103,7 @@ rmw_ret_t rmw_uros_sync_session(const int);
 bool micro_ros_utilities_create_message_memory(const rosidl_message_type_support_t *, void *, const micro_ros_utilities_memory_conf_t);
 const rosidl_message_type_support_t * message_support(void);
 const rosidl_service_type_support_t * service_support(void);
+const rosidl_action_type_support_t * action_support(void);
 
 /* Of operating systems and ports. */
 int xTaskCreate(void (*)(void *), const char * const, const uint32_t, void * const, unsigned long, void *);
@@ -115,6 +121,7 @@ void esp_rom_delay_us(uint32_t);
 #endif
 #define ROSIDL_GET_MSG_TYPE_SUPPORT(package, kind, name) message_support()
 #define ROSIDL_GET_SRV_TYPE_SUPPORT(package, kind, name) service_support()
+#define ROSIDL_GET_ACTION_TYPE_SUPPORT(package, name) action_support()
 #define K_THREAD_DEFINE(name, size, entry, a, b, c, priority, options, delay) void (* name)(void *, void *, void *) = entry
 #define K_USEC(us) ((int64_t) (us))
 #define pdMS_TO_TICKS(ms) ((uint32_t) (ms))

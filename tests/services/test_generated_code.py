@@ -28,7 +28,7 @@ middleware:
       {thread}
       max_handles: 20
       loop: {loop}
-      order: [on_scan, control, on_mode, on_answer, wake]
+      order: [on_scan, control, on_mode, on_answer, wake, on_move]
     {second}
   transport: {{serial: {{baud_rate: 115200}}}}
   limits: {{{limits}}}
@@ -45,8 +45,13 @@ application:
       services: [{{name: on_mode, type: std_srvs/srv/SetBool, bounds: {{string: 9}}, TIMES}}]
       clients: [{{name: on_answer, service: ask, request_size: 3 B, response_size: 5 B, TIMES}}]
       guard_conditions: [{{name: wake, TIMES}}]
+      action_servers: [{{name: on_move, goal_size: 20 B, result_size: 6 B, feedback_size: 18 B, TIMES}}]
       parameter_server: {{rate: 1 Hz, execution_time: 1 ms}}
 """.replace("TIMES", "rate: 1 Hz, execution_time: 1 ms")
+ACTION_CLIENT = (
+    "action_clients: [{name: on_done, action: move, goal_size: 20 B, result_size: 6 B, feedback_size: 18 B, "
+    "rate: 1 Hz, execution_time: 1 ms}]"
+)
 LIMITS = ", ".join(f"RMW_UXRCE_MAX_{each}: 30" for each in ("PUBLISHERS", "SUBSCRIPTIONS", "SERVICES", "CLIENTS", "HISTORY"))
 THREAD = "priority: 4, stack: 9000 B"
 #: Port -> operating system, and the loop of its first thread.
@@ -128,6 +133,7 @@ def facts(description, has_threads=True):
         "services": {(s.name, s.request_size, s.response_size) for node in nodes for s in node.services},
         "clients": {(c.name, c.service, c.request_size, c.response_size) for node in nodes for c in node.clients},
         "guards": {guard.name for node in nodes for guard in node.guard_conditions},
+        "actions": {(a.name, a.goal_size, a.result_size, a.feedback_size) for node in nodes for a in node.action_servers},
         "servers": [node.parameter_server is not None for node in nodes],
         "loops": [(each.name, loop_of(each.loop)) for each in executors],
         "threads": [(each.priority, each.stack) for each in executors] if has_threads else [],
@@ -180,7 +186,7 @@ def test_the_code_compiles(port, options, tmp_path):
     generate(described(port, tmp_path), tmp_path / "code", code=True, **options)
     (source,) = (tmp_path / "code").glob("amuros_app.*")
     text = source.read_text()
-    types = set(re.findall(r"\b\w+__(?:msg|srv)__\w+", text))
+    types = set(re.findall(r"\b\w+__(?:msg|srv|action)__\w+", text))
     stubs = STUBS.read_text() + "".join(f"typedef struct {{ int content; }} {each};\n" for each in sorted(types))
     includes = "".join(f"{tmp_path}/include/{each}\n" for each in re.findall(r"#include <(.+)>", text))
     for each in includes.split():
@@ -190,7 +196,8 @@ def test_the_code_compiles(port, options, tmp_path):
         (tmp_path / "include" / name).unlink(missing_ok=True)
     (tmp_path / "include" / "rmw_microxrcedds_c").mkdir()
     config = "".join(
-        f"#define {name} 99\n" for name in re.findall(r"\b(?:RMW|UXR)_\w+", (tmp_path / "code" / "amuros_limits.h").read_text())
+        f"#define {name} 999\n"
+        for name in re.findall(r"\b(?:RMW|UXR)_\w+", (tmp_path / "code" / "amuros_limits.h").read_text())
     )
     (tmp_path / "include" / "rmw_microxrcedds_c" / "config.h").write_text(config)
     (tmp_path / "stubs.h").write_text(stubs)
@@ -249,6 +256,11 @@ def test_the_stamps_of_the_code_are_measured(tmp_path):
         ("bounds: {string: 30}", "message_size: 64 B", "std_msgs/msg/String has no longest string or sequence"),
         ("sleep: 3 ms", "sleep: 0.5 ms", "no function of the port is known to sleep for 500 us"),
         ("priority: 4", "", "'stack' and 'priority' of 'first' are not stated"),
+        (
+            "guard_conditions:",
+            f"{ACTION_CLIENT}\n      guard_conditions:",
+            "no code is written for clients of actions of 'robot'",
+        ),
         ("loop: {spin_some: 1 ms, sleep: 3 ms}", "period: 10 ms\n      callbacks: in-executor", "'first' has no 'loop'"),
         ("max_handles: 20", "trigger: {custom: [[control]]}", "the trigger of 'first' is a function of the application"),
     ],
