@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.source.arrays import declared_sizes
+from amalthea_uros.source.arrays import WIDTHS, declared_sizes
 from amalthea_uros.source.constructions import made_class
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.syntax import descendants, parse, text_of
@@ -62,6 +62,7 @@ class CodeProgram:
         has two
     classes : of variables and members that are objects, or lead to one; "" where several have this name
     arrays : expressions of their lengths, by name; "" if that follows from the list that they are initialised with
+    widths : of the elements of arrays in bytes, by the name of the array, as far as their type shows it
     assigned : what is assigned to members, by their texts, such as `quality.reliability`
     constructed : of a class with one constructor, what that gives its members
     constructors : of each class
@@ -78,6 +79,7 @@ class CodeProgram:
     objects: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
     classes: dict[str, str] = field(default_factory=dict)
     arrays: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    widths: dict[str, int] = field(default_factory=dict)
     assigned: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     constructed: dict[str, dict[str, Node]] = field(default_factory=lambda: defaultdict(dict))
     constructors: dict[str, list[CodeFunction]] = field(default_factory=lambda: defaultdict(list))
@@ -139,8 +141,11 @@ def _function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction 
 def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
     if node.type in ("declaration", "field_declaration"):
         _note_objects(program, file, node)
+        kind = node.child_by_field_name("type")
         for array, size in declared_sizes(node).items():
             program.arrays[array].add(size)
+            if kind is not None and text_of(kind) in WIDTHS:
+                program.widths[array] = WIDTHS[text_of(kind)]
     match node.type:
         case "new_expression" | "template_function":
             _note_made(program, file, node)

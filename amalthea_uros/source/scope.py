@@ -8,7 +8,7 @@ from operator import eq, ge, gt, le, lt, ne
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.source.arrays import counted_array, elements_of, member_of
+from amalthea_uros.source.arrays import counted_array, elements_of, member_of, sized_operand
 from amalthea_uros.source.constructions import arguments_of, made_class
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram
@@ -404,6 +404,9 @@ class Expression:
         if node.type == "unary_expression" and (inner := node.child_by_field_name("argument")) is not None:
             value = own.at(inner).number
             return None if value is None else {"-": -value, "+": value, "!": int(not value)}.get(text_of(node.children[0]))
+        if (whole := sized_operand(node)) is not None:
+            length, width = own.at(whole).length, self.program.widths.get(text_of(whole))
+            return length * width if length is not None and width is not None else None
         if node.type in ("binary_expression", "call_expression") and (array := counted_array(node)) is not None:
             return own.at(array).length
         if node.type == "binary_expression":

@@ -75,6 +75,8 @@ INI = "[env:robot]\nboard = {}\nframework = arduino\nlib_deps = https://github.c
             ["stack: 16000 B", "priority: 5"],
         ),
         (TASK.format("size()"), {"sdkconfig": ""}, ["stack: TODO", "priority: TODO"]),
+        # A stack of the application: 3000 words of 4 B.
+        (f"uint32_t words[3000]; {TASK.format('sizeof(words)')}", {"sdkconfig": ""}, ["stack: 12000 B"]),
         # Two environments with different boards state none.
         (
             ARDUINO,
