@@ -43,7 +43,7 @@ LINES = {
     "report": 8595,
     "services": 2601,
     "simulate": 8584,
-    "source": 3260,
+    "source": 3275,
     "spec": 2956,
     "timing": 5626,
     "trace": 5057,

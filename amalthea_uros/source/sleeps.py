@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
+from amalthea_uros._internal.records import replace
 from amalthea_uros.source.facts import CodeFacts
 from amalthea_uros.source.ports import MICROSECOND, MILLISECOND, SECOND
 from amalthea_uros.source.scope import Expression, called
@@ -57,6 +58,7 @@ _DURATIONS = {
     **dict.fromkeys(("K_USEC", "microseconds"), MICROSECOND),
     **dict.fromkeys(("K_SECONDS", "seconds"), SECOND),
 }
+_RATE = "configTICK_RATE_HZ"
 #: What milliseconds are divided by to make ticks of them.
 _TICK_LENGTHS = ("portTICK_PERIOD_MS", "portTICK_RATE_MS")
 
@@ -98,7 +100,7 @@ def _duration(given: Expression) -> Time | None:
 
 def _whole_ticks(given: Expression, tick_rate: Fraction | None) -> Time | None:
     """A delay in ticks; a time is cut to whole ticks, so a short one does not sleep at all."""
-    wanted = _duration(given) or _divided(given)
+    wanted = _duration(given) or _divided(given) or _by_rate(given)
     if wanted is not None:
         if tick_rate is None:
             return wanted
@@ -115,6 +117,14 @@ def _divided(given: Expression) -> Time | None:
     if given.at(right).text not in _TICK_LENGTHS:
         return None
     number = given.at(left).number
+    return None if number is None or number < 0 else Time(number * MILLISECOND)
+
+
+def _by_rate(given: Expression) -> Time | None:
+    """The time of a number of ticks that is made with their rate; whatever it is, the time is the number at 1000 Hz in milliseconds."""
+    if _RATE not in given.text or given.program.macros.get(_RATE):
+        return None
+    number = replace(given, bindings={**given.bindings, _RATE: 1000}).number
     return None if number is None or number < 0 else Time(number * MILLISECOND)
 
 

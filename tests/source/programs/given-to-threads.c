@@ -8,7 +8,7 @@ void odom_thread(void * args) {
     xSemaphoreTake(mutex, portMAX_DELAY);
     rcl_publish(out, &msg, NULL);
     xSemaphoreGive(mutex);
-    vTaskDelay(pdMS_TO_TICKS(50));
+    vTaskDelay(50 * configTICK_RATE_HZ / 1000);
   }
 }
 void on_twist(const void * m) {}
