@@ -5,7 +5,7 @@
 #include <rclc_action/rclc_action.h>
 #include <example_interfaces/action/fibonacci.h>
 #include <rclc/executor.h>
-void *fibonacci_worker(void *args) {
+void *work(void *args) {
   rclc_action_goal_handle_t *goal_handle = (rclc_action_goal_handle_t *)args;
   example_interfaces__action__Fibonacci_FeedbackMessage feedback;
   for (size_t i = 2; i < 10; i++) {
@@ -17,8 +17,8 @@ void *fibonacci_worker(void *args) {
   pthread_exit(NULL);
 }
 rcl_ret_t handle_goal(rclc_action_goal_handle_t *goal_handle, void *context) {
-  pthread_t *thread_id = malloc(sizeof(pthread_t));
-  pthread_create(thread_id, NULL, fibonacci_worker, goal_handle);
+  pthread_t *worker = malloc(sizeof(pthread_t));
+  pthread_create(worker, NULL, work, goal_handle);
   return RCL_RET_ACTION_GOAL_ACCEPTED;
 }
 bool handle_cancel(rclc_action_goal_handle_t *goal_handle, void *context) { return true; }
@@ -27,12 +27,12 @@ void appMain(void *argument) {
   rclc_support_t support;
   RCCHECK(rclc_support_init(&support, 0, NULL, &allocator));
   rcl_node_t node;
-  RCCHECK(rclc_node_init_default(&node, "fibonacci_action_server_rcl", "", &support));
-  rclc_action_server_t action_server;
-  RCCHECK(rclc_action_server_init_default(&action_server, &node, &support, ROSIDL_GET_ACTION_TYPE_SUPPORT(example_interfaces, Fibonacci), "fibonacci"));
+  RCCHECK(rclc_node_init_default(&node, "counter", "", &support));
+  rclc_action_server_t server;
+  RCCHECK(rclc_action_server_init_default(&server, &node, &support, ROSIDL_GET_ACTION_TYPE_SUPPORT(example_interfaces, Fibonacci), "count"));
   rclc_executor_t executor;
   rclc_executor_init(&executor, &support.context, 1, &allocator);
-  example_interfaces__action__Fibonacci_SendGoal_Request ros_goal_request[10];
-  RCCHECK(rclc_executor_add_action_server(&executor, &action_server, 10, ros_goal_request, sizeof(example_interfaces__action__Fibonacci_SendGoal_Request), handle_goal, handle_cancel, (void *)&action_server));
+  example_interfaces__action__Fibonacci_SendGoal_Request goals[10];
+  RCCHECK(rclc_executor_add_action_server(&executor, &server, 10, goals, sizeof(example_interfaces__action__Fibonacci_SendGoal_Request), handle_goal, handle_cancel, (void *)&server));
   while (1) { rclc_executor_spin_some(&executor, RCL_MS_TO_NS(10)); usleep(100000); }
 }

@@ -7,11 +7,10 @@
 #include <microros_transports.h>
 rcl_publisher_t ping_pub; rcl_subscription_t pong_sub; std_msgs__msg__Int64 ping; std_msgs__msg__Int64 pong;
 void pong_cb(const void * msgin) { (void)msgin; }
-void microros_thread_entry(void *pvParameters)
+void ros_thread(void *argument)
 {
-    FSP_PARAMETER_NOT_USED (pvParameters);
-    custom_transport_args remote_addr = { .agent_ip_address = "192.168.1.3", .agent_port=8888 };
-    rmw_uros_set_custom_transport(false, (void *) &remote_addr, renesas_e2_transport_open, renesas_e2_transport_close, renesas_e2_transport_write, renesas_e2_transport_read);
+    custom_transport_args agent = { .agent_ip_address = "192.168.1.3", .agent_port=8888 };
+    rmw_uros_set_custom_transport(false, (void *) &agent, renesas_e2_transport_open, renesas_e2_transport_close, renesas_e2_transport_write, renesas_e2_transport_read);
     rcl_allocator_t allocator = rcl_get_default_allocator();
     rclc_support_t support;
     rclc_support_init(&support, 0, NULL, &allocator);
