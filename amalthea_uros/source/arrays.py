@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 #: Classes of C++ that are arrays of a fixed length: their last argument.
 _TEMPLATES = ("array",)
+#: Types of the elements of stacks and their sizes in bytes, on controllers with 32 bits.
+WIDTHS = {"uint8_t": 1, "char": 1, "uint32_t": 4, "StackType_t": 4, "uint64_t": 8}
 
 
 def declared_sizes(node: Node) -> dict[str, str]:
@@ -75,14 +77,14 @@ def counted_array(node: Node) -> Node | None:
         is_count = function is not None and text_of(function) in ("std::size", "size", "ARRAY_SIZE", "RCL_ARRAY_SIZE", "LENGTH")
         return given[0] if is_count and len(given) == 1 else None
     left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
-    whole, first = (_sized(each) if each is not None else None for each in (left, right))
+    whole, first = (sized_operand(each) if each is not None else None for each in (left, right))
     if whole is None or first is None:
         return None
     base = first.child_by_field_name("argument") if first.type in ("subscript_expression", "pointer_expression") else None
     return whole if base is not None and text_of(base) == text_of(whole) else None
 
 
-def _sized(node: Node) -> Node | None:
+def sized_operand(node: Node) -> Node | None:
     """The operand of `sizeof`."""
     if node.type != "sizeof_expression":
         return None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 
 from amalthea_uros._internal.ports import DISTRIBUTIONS, known_ports
 from amalthea_uros._internal.records import dataclass, field
@@ -24,6 +25,7 @@ class BuildFacts:
     ticks : per second
     main_stack, main_priority : of the thread of main()
     options : of the middleware
+    macros : of Kconfig, as the code has them
     """
 
     port: Stated | None = None
@@ -36,6 +38,7 @@ class BuildFacts:
     main_stack: Stated | None = None
     main_priority: Stated | None = None
     options: dict[str, CodeOption] = field(default_factory=dict)
+    macros: dict[str, str] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
 
 
@@ -47,9 +50,9 @@ def build_facts(files: Iterable[SourceFile]) -> BuildFacts:
             case "platformio.ini":
                 _platformio(facts, file)
             case "prj.conf" | "amuros.conf":
-                _zephyr(facts, dict(_settings(file, "")))
+                _zephyr(facts, _kconfig(facts, file))
             case "sdkconfig" | "sdkconfig.defaults":
-                _espidf(facts, dict(_settings(file, "")))
+                _espidf(facts, _kconfig(facts, file))
             case "CMakeLists.txt":
                 _cmake(facts, file)
             case "library.properties":
@@ -58,6 +61,7 @@ def build_facts(files: Iterable[SourceFile]) -> BuildFacts:
 
 
 _SETTING = re.compile(r"\s*([\w.]+)\s*=\s*(.*?)\s*(?:[;#].*)?$")
+_REFERENCE = re.compile(r"\$\{([\w:-]+)\.(\w+)\}")
 _SECTION = re.compile(r"\s*\[(.*)\]")
 
 
@@ -78,13 +82,22 @@ def _settings(file: SourceFile, section: str) -> Iterator[tuple[str, Stated]]:
     yield from values.items()
 
 
+def _kconfig(facts: BuildFacts, file: SourceFile) -> Mapping[str, Stated]:
+    """The settings of a file of Kconfig, which are macros in the code: a switch that is on is 1."""
+    settings = dict(_settings(file, ""))
+    facts.macros |= {
+        name: "1" if stated.value == "y" else stated.value for name, stated in settings.items() if stated.value != "n"
+    }
+    return settings
+
+
 def _platformio(facts: BuildFacts, file: SourceFile) -> None:
     """https://docs.platformio.org, projectconf; of several environments only what all of them say alike."""
     names = re.findall(r"^\s*\[(env:.*)\]", file.text.decode("utf-8", "replace"), re.MULTILINE)
     general, project = dict(_settings(file, "env")), dict(_settings(file, "platformio"))
     if (default := project.get("default_envs")) is not None:
         names = [name for name in names if name.removeprefix("env:") in re.split(r"[,\s]+", default.value)] or names
-    every = [general | dict(_settings(file, name)) for name in names] or [general]
+    every = [_interpolated(file, general | dict(_settings(file, name))) for name in names] or [general]
     common = {
         key: stated for key, stated in every[0].items() if len({each[key].value if key in each else "" for each in every}) == 1
     }
@@ -105,6 +118,16 @@ def _platformio(facts: BuildFacts, file: SourceFile) -> None:
     flags = common.get("build_flags")
     if flags is not None and (usb := re.search(r"ARDUINO_USB_CDC_ON_BOOT=([01])", flags.value)) is not None:
         facts.transport = facts.transport or Stated("usb_cdc" if usb[1] == "1" else "serial", flags.place)
+
+
+def _interpolated(file: SourceFile, settings: Mapping[str, Stated]) -> dict[str, Stated]:
+    """Settings with `${section.name}` replaced by that value."""
+    return {name: Stated(_REFERENCE.sub(partial(_referred, file), each.value), each.place) for name, each in settings.items()}
+
+
+def _referred(file: SourceFile, reference: re.Match[str]) -> str:
+    stated = dict(_settings(file, reference[1])).get(reference[2])
+    return stated.value if stated is not None else reference[0]
 
 
 def _transport(stated: Stated, words: Mapping[str, str]) -> Stated | None:

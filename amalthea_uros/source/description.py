@@ -44,7 +44,6 @@ _MESSAGE: Mapping[str, str] = {"message_size": ""}
 _SERVICE: Mapping[str, str] = {"request_size": "Request", "response_size": "Response"}
 _ACTION: Mapping[str, str] = {"goal_size": "Goal", "result_size": "Result", "feedback_size": "Feedback"}
 _ON, _OFF = ("on", "1", "true"), ("off", "0", "false")
-_NOT_ARRIVING = (CodeEntityKind.TIMER, CodeEntityKind.GUARD_CONDITION)
 
 
 def description_text(facts: CodeFacts, name: str, board: str | None, options: Mapping[str, str]) -> str:
@@ -133,6 +132,8 @@ def _middleware(facts: CodeFacts, names: CodeNames, options: Mapping[str, str]) 
     option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
     if option is not None and option.value.upper() in ("ON", "1", "TRUE"):
         yield f"multithread: true{_at(option.place)}"
+    elif facts.lock is not None:
+        yield f"multithread: true{_at(facts.lock, 'the application locks the session')}"
     yield from _transport(facts)
     limits = list(_limits(facts, options))
     if limits:
@@ -174,7 +175,7 @@ def _executor(executor: CodeExecutor, facts: CodeFacts, names: CodeNames) -> Ite
     if not _is_of_other_loop(executor):
         yield from _loop(executor, names)
     yield "callbacks: in-executor"
-    if not any(handle.entity in facts.entities for handle in executor.handles):
+    if not any(handle.entity in facts.entities or handle.kind is CodeEntityKind.LIFECYCLE for handle in executor.handles):
         yield f"order: {GAP} # nothing that is added to it is understood: describe its callbacks under the nodes"
     order = [names.handles[handle.entity] for handle in executor.handles if handle.entity in names.handles]
     if len(order) > 1:
@@ -196,6 +197,8 @@ def _sender(sender: CodeSender, name: str, names: CodeNames) -> Iterator[str]:
 def _thread(thread: Thread) -> Iterator[str]:
     if thread.stack is not None:
         yield f"stack: {thread.stack} B{_at(thread.place)}"
+    elif thread.entry is not None:
+        yield f"stack: {GAP}{_at(thread.place)}"
     yield f"priority: {GAP if thread.priority is None else thread.priority}{_at(thread.place)}"
     if thread.core is not None:
         yield f"core: {GAP}{_at(thread.place, f'pinned to core {thread.core}')}"
@@ -335,8 +338,9 @@ def _callback(entity: CodeEntity, handle: CodeHandle, executor: str, facts: Code
     yield from _content(entity, facts)
     if entity.kind is CodeEntityKind.TIMER:
         yield f"period: {_time(entity.period)}{_at(entity.place)}"
-    elif entity.kind not in _NOT_ARRIVING:
-        yield f"rate: {GAP} # how often messages arrive at most"
+    else:
+        what = "it is triggered" if entity.kind is CodeEntityKind.GUARD_CONDITION else "messages arrive"
+        yield f"rate: {GAP} # how often {what} at most"
     if handle.always:
         yield "invocation: always"
     if executor != next(iter(names.executors.values())):

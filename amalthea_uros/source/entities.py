@@ -32,6 +32,10 @@ _POLICIES = {
     "RMW_QOS_POLICY_RELIABILITY_RELIABLE": RELIABLE,
     "RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT": BEST_EFFORT,
 }
+#: The members of a profile up to its reliability.
+_POLICIES_IN_ORDER = ("history", "depth", "reliability")
+#: ros2/rcl rcl/include/rcl: they have the profile that is the default.
+_DEFAULT_OPTIONS = tuple(f"rcl_{each}_get_default_options" for each in ("publisher", "subscription", "service", "client"))
 _NANOSECOND = 1000
 
 
@@ -54,11 +58,14 @@ class _Creation:
     quality: str | None = None
 
 
-def _with_quality(kind: CodeEntityKind, prefix: str) -> dict[str, _Creation]:
-    qualities = {"_init_default": RELIABLE, "_init_best_effort": BEST_EFFORT, "_init": _BY_PROFILE}
-    return {
-        prefix + suffix: _Creation(kind=kind, node=1, type=2, name=3, quality=quality) for suffix, quality in qualities.items()
+def _with_quality(kind: CodeEntityKind, name: str) -> dict[str, _Creation]:
+    qualities = {
+        f"rclc_{name}_init_default": RELIABLE,
+        f"rclc_{name}_init_best_effort": BEST_EFFORT,
+        f"rclc_{name}_init": _BY_PROFILE,
+        f"rcl_{name}_init": _BY_PROFILE,
     }
+    return {call: _Creation(kind=kind, node=1, type=2, name=3, quality=quality) for call, quality in qualities.items()}
 
 
 _TIMER = _Creation(kind=CodeEntityKind.TIMER, period=2, callback=3)
@@ -66,6 +73,8 @@ _TIMER = _Creation(kind=CodeEntityKind.TIMER, period=2, callback=3)
 CREATIONS: Mapping[str, _Creation] = {
     "rclc_node_init_default": _Creation(kind=CodeEntityKind.NODE, name=1),
     "rclc_node_init_with_options": _Creation(kind=CodeEntityKind.NODE, name=1),
+    "rcl_node_init": _Creation(kind=CodeEntityKind.NODE, name=1),
+    **dict.fromkeys(("rcl_timer_init", "rcl_timer_init2"), _Creation(kind=CodeEntityKind.TIMER, period=3, callback=4)),
     "rclc_make_node_a_lifecycle_node": _Creation(kind=CodeEntityKind.LIFECYCLE, node=1),
     "rclc_timer_init_default": _TIMER,
     "rclc_timer_init_default2": _TIMER,
@@ -74,10 +83,10 @@ CREATIONS: Mapping[str, _Creation] = {
     "rclc_action_client_init_default": _Creation(kind=CodeEntityKind.ACTION_CLIENT, node=1, type=2, name=3),
     "rclc_parameter_server_init_default": _Creation(kind=CodeEntityKind.PARAMETER_SERVER, node=1),
     "rclc_parameter_server_init_with_option": _Creation(kind=CodeEntityKind.PARAMETER_SERVER, node=1),
-    **_with_quality(CodeEntityKind.PUBLISHER, "rclc_publisher"),
-    **_with_quality(CodeEntityKind.SUBSCRIPTION, "rclc_subscription"),
-    **_with_quality(CodeEntityKind.SERVICE, "rclc_service"),
-    **_with_quality(CodeEntityKind.CLIENT, "rclc_client"),
+    **_with_quality(CodeEntityKind.PUBLISHER, "publisher"),
+    **_with_quality(CodeEntityKind.SUBSCRIPTION, "subscription"),
+    **_with_quality(CodeEntityKind.SERVICE, "service"),
+    **_with_quality(CodeEntityKind.CLIENT, "client"),
 }
 
 
@@ -113,7 +122,9 @@ def message_type(given: Expression) -> MessageType | None:
     if own.node.type != "call_expression":
         return None
     name, arguments = called(own.node)
-    names = [text_of(argument) for argument in arguments]
+    # A parameter of a macro is replaced in the names of types, too; one of a function is not.
+    is_macro = own.function is not None and own.function.is_macro
+    names = [own.at(argument).name if is_macro else text_of(argument) for argument in arguments]
     if name not in _TYPE_SUPPORTS:
         return None
     if len(names) == 2:
@@ -123,15 +134,15 @@ def message_type(given: Expression) -> MessageType | None:
 
 def callback_of(given: Expression, walk: CodeWalk) -> CodeCallback | None:
     """The function that an expression names; None for NULL."""
-    own = given.core
+    own = given.resolved
     if own.node.type == "lambda_expression":
         function = walk.lambdas.get(text_of(own.node))
         return CodeCallback(name=function.name if function is not None else "lambda", function=function)
-    name = given.name
+    name = own.name
     if name in ("NULL", "nullptr", "0"):
         return None
     found = walk.program.functions.get(name, [])
-    near = [each for each in found if each.file is given.file] or found
+    near = [each for each in found if each.file is own.file] or found
     return CodeCallback(name=name, function=near[0] if len(near) == 1 else None)
 
 
@@ -141,11 +152,18 @@ def _reliability(call: FunctionCall, quality: str | None) -> str | None:
     profile = call.argument(4)
     if profile is None:
         return None
-    assigned = profile.program.assigned.get(f"{profile.core.text}.reliability", set())
-    own = member_of(profile.resolved.node, "reliability", ())
+    assigned: set[str] = set().union(
+        *(profile.program.assigned.get(f"{profile.core.text}{member}.reliability", set()) for member in ("", ".qos"))
+    )
+    profiles = profile.program.assigned.get(f"{profile.core.text}.qos", set())
+    if profiles and not assigned:
+        return _PROFILES.get(next(iter(profiles))) if len(profiles) == 1 else None
+    own = member_of(profile.resolved.node, "reliability", _POLICIES_IN_ORDER)
     stated = {*assigned, *([text_of(own)] if own is not None else [])}
     if stated:
         return _POLICIES.get(next(iter(stated))) if len(stated) == 1 else None
+    if profile.resolved.node.type == "call_expression" and called(profile.resolved.node)[0] in _DEFAULT_OPTIONS:
+        return RELIABLE
     return _PROFILES.get(profile.resolved.name)
 
 

@@ -112,7 +112,6 @@ class Thread:
     stack: int | None = None
     priority: int | None = None
     core: int | None = None
-    notes: tuple[str, ...] = ()
 
 
 class SpinKind(StrEnum):
@@ -285,6 +284,8 @@ class CodeFacts:
 
     Attributes
     ----------
+    threads : by the scopes of the functions that they begin with
+    lock : where a thread takes the lock with which the application keeps its threads from using the session together
     publishes : keys of publishers and clients by the functions that use them, with the places
     types : those that the application defines, with the types of their fields
     rtos : the operating system, "" if unknown
@@ -297,6 +298,8 @@ class CodeFacts:
     entities: dict[str, CodeEntity] = field(default_factory=dict)
     executors: dict[str, CodeExecutor] = field(default_factory=dict)
     senders: list[CodeSender] = field(default_factory=list)
+    threads: dict[str, Thread] = field(default_factory=dict)
+    lock: Location | None = None
     publishes: dict[str, dict[str, Location]] = field(default_factory=dict)
     transport: CodeTransport | None = None
     types: dict[str, str] = field(default_factory=dict)

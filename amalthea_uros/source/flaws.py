@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.ports import known_ports
@@ -11,11 +12,14 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
-from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated
+from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated, session_users
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
-from amalthea_uros.source.syntax import descendants
+from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
 
 _MILLISECOND = 10**9
 _SECOND = 10**12
@@ -50,7 +54,7 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
         yield from _waiting(executor)
         yield from _timers(executor, facts)
         yield from _triggers(executor)
-    yield from _sessions(facts)
+    yield from _sessions(facts, walk)
     yield from _sleepless(facts, walk)
     yield from _blocking(facts, walk)
     yield from _pings(facts, walk)
@@ -186,7 +190,11 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
 
 def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     described = _in_loops(facts)
+    spins = [call for call in walk.calls if call.name in SPINS and is_repeated(call)]
     for call in walk.calls:
+        if any(call.root is spin.root and call.excludes(spin) for spin in spins):
+            # Of another state than the one that the description has.
+            continue
         if call.name in ROUND_TRIPS and is_repeated(call) and call.place not in described:
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
             yield Finding(
@@ -204,16 +212,13 @@ def _never_again(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
         yield Finding("IMP026", Severity.INFO, message, first.spins[0].place, advice)
 
 
-def _sessions(facts: CodeFacts) -> Iterator[Finding]:
+def _sessions(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """Threads that use the session of the middleware without a lock: eProsima/Micro-XRCE-DDS-Client CMakeLists.txt."""
-    option = facts.options.get("UCLIENT_PROFILE_MULTITHREAD")
-    spinning = {
-        executor.thread.place: executor.thread.name for executor in facts.executors.values() if executor.thread is not None
-    }
-    sending = {sender.place: sender.name for sender in facts.senders}
-    names = [*spinning.values(), *sending.values()]
-    if len(names) > 1 and (option is None or option.value.upper() not in ("ON", "1", "TRUE")):
-        place = next(iter(sending or spinning))
+    option, users = facts.options.get("UCLIENT_PROFILE_MULTITHREAD"), session_users(facts, walk)
+    if len(users) > 1 and facts.lock is None and (option is None or option.value.upper() not in ("ON", "1", "TRUE")):
+        sending = (calls[0] for calls in users.values() if all(call.name not in SPINS for call in calls))
+        place = next(sending, next(iter(users.values()))[0]).place
+        names = sorted(users, key=lambda name: all(call.name not in SPINS for call in users[name]))
         message = f"{' and '.join(map(repr, names))} use one session of the middleware, which nothing locks in these files"
         advice = "Build with UCLIENT_PROFILE_MULTITHREAD=ON, or publish in callbacks of the executor."
         yield Finding("IMP023", Severity.WARNING, message, place, advice)
@@ -286,6 +291,11 @@ def not_understood(walk: CodeWalk, facts: CodeFacts) -> Iterator[Finding]:
     yield from _unread(walk)
 
 
+def _is_read_macro(node: Node, walk: CodeWalk) -> bool:
+    name = node.child_by_field_name("name") if node.type == "preproc_function_def" else None
+    return name is not None and any(each.is_macro for each in walk.program.functions.get(text_of(name), ()))
+
+
 def _unread(walk: CodeWalk) -> Iterator[Finding]:
     """Calls in the text that no path through the code led to."""
     for file, root in walk.program.files:
@@ -294,7 +304,7 @@ def _unread(walk: CodeWalk) -> Iterator[Finding]:
         if _CALL.search(file.text) is None:
             continue
         for node in descendants(root):
-            if node.type in ("comment", "string_literal", "preproc_def", "function_declarator"):
+            if node.type in ("comment", "string_literal", "preproc_def", "function_declarator") or _is_read_macro(node, walk):
                 ignored.append((node.start_byte, node.end_byte))
         for match in _CALL.finditer(file.text):
             position = match.start()

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
-from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind, Thread
+from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind
+from amalthea_uros.source.locks import held_at, is_lock
 from amalthea_uros.source.ports import MILLISECOND
 from amalthea_uros.source.sleeps import SLEEPS, WaitCall, wait_of
-from amalthea_uros.source.walk import FunctionCall
+from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time
 
 #: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent -> what they do, and the position of their attempts.
@@ -20,6 +21,7 @@ _AGENT = {
 }
 ROUND_TRIPS = tuple(_AGENT)
 SENDS = ("rcl_publish", "rcl_send_request")
+_USES = frozenset({*SPIN_KINDS, *SENDS, "rclc_action_publish_feedback", "rclc_action_send_result"})
 
 
 def add_spins(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
@@ -43,13 +45,8 @@ def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall]) -
     )
 
 
-def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall], threads: Mapping[str, Thread]) -> None:
-    """Add the loops that send outside of callbacks, and in which no executor spins.
-
-    Parameters
-    ----------
-    threads : by the scopes of the functions that they begin with
-    """
+def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
+    """Add the loops that send outside of callbacks, and in which no executor spins."""
     published = {place for places in facts.publishes.values() for place in places.values()}
     known = published | {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
     for call in calls:
@@ -59,9 +56,29 @@ def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall], threads: Mappin
             continue
         items = tuple(_items(facts, call, calls))
         known |= {item.place for item in items}
-        thread = threads.get(call.root.scope)
+        thread = facts.threads.get(call.root.scope)
         name = thread.name if thread is not None else call.root.name
         facts.senders.append(CodeSender(name=name, thread=thread, items=items, place=call.place))
+
+
+def session_users(facts: CodeFacts, walk: CodeWalk) -> dict[str, list[FunctionCall]]:
+    """The threads that use the session of the middleware again and again, by their names, with the calls that do."""
+    users: dict[str, list[FunctionCall]] = {}
+    for call in walk.calls:
+        if call.root is None or call.name not in _USES or call.root.scope in facts.publishes:
+            continue
+        thread = facts.threads.get(call.root.scope)
+        if thread is not None or is_repeated(call):
+            users.setdefault(thread.name if thread is not None else call.root.name, []).append(call)
+    return users
+
+
+def add_lock(facts: CodeFacts, walk: CodeWalk) -> None:
+    """Note a lock that every thread holds whenever it uses the session."""
+    calls = [call for each in session_users(facts, walk).values() for call in each]
+    held = [held_at(call, walk.calls) for call in calls]
+    if held and set.intersection(*held):
+        facts.lock = calls[0].place
 
 
 def is_repeated(call: FunctionCall) -> bool:
@@ -79,6 +96,8 @@ def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall]) 
     """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
     for call in calls:
         if call.root is not spin.root or call.loops[: len(spin.loops)] != spin.loops or call.excludes(spin):
+            continue
+        if is_lock(call, calls):
             continue
         item = _item(facts, call)
         if item is None:
@@ -111,7 +130,7 @@ def _wait(wait: WaitCall, call: FunctionCall) -> CodeLoopItem | None:
     if wait.time == 0:
         return None
     kind = CodeLoopKind.BUSY_WAIT if wait.is_busy else CodeLoopKind.SLEEP
-    return CodeLoopItem(kind=kind, time=wait.time, place=call.place, note=wait.note)
+    return CodeLoopItem(kind=kind, time=wait.time, place=call.place, note=wait.note or wait.waits_for)
 
 
 def _answer(call: FunctionCall, attempts: int | None) -> Time | None:

@@ -40,7 +40,8 @@ def _lacks_memory(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, text
     if length is None or length.is_fixed:
         return False
     name = re.escape(re.split(r"\W", handle.message)[0])
-    gives = rf"\b{name}\b[^;]*\bcapacity\s*=|\b\w*(memory|assign|Sequence__init|Sequence__create)\w*\s*\([^;]*\b{name}\b"
+    is_assigned = rf"\b{name}\b[^;]*(\bcapacity\s*=|=\s*micro_ros_string_utilities_)"
+    gives = rf"{is_assigned}|\b\w*(memory|assign|Sequence__init|Sequence__create)\w*\s*\([^;]*\b{name}\b"
     # A pointer can lead to memory that is given elsewhere, under another name.
     is_pointer = re.search(rf"\*\s*{name}\b", text) is not None
     return not is_pointer and re.search(gives, text) is None

@@ -27,7 +27,7 @@ _HEADERS = (
 )
 _INCLUDE = re.compile(rb'^\s*#\s*include\s*[<"]([^">]+)[">]', re.MULTILINE)
 #: Ports whose programs call the functions of Arduino.
-_OF_ARDUINO = ("arduino", "platformio")
+OF_ARDUINO = ("arduino", "platformio")
 _RTOS = {"zephyr": "zephyr", "espidf": "freertos", "freertos": "freertos", "nuttx": "nuttx"}
 #: Ticks per second of a port if nobody changes them: espressif/esp-idf components/freertos/Kconfig.
 _TICKS = {"espidf": Fraction(100)}
@@ -60,8 +60,8 @@ def platform_of(program: CodeProgram, calls: Iterable[FunctionCall], build: Buil
     port = build.port.value if build.port is not None else _port(included)
     is_esp32 = has_freertos(board) or any(re.fullmatch(r"esp_\w+\.h", name) for name in included)
     # Of the boards that micro-ROS for Arduino supports, those with ESP32 have this function.
-    is_esp32 = is_esp32 or any(call.name == "set_microros_wifi_transports" for call in every)
-    if port in _OF_ARDUINO and is_esp32 and (build.framework is None or build.framework.value == "arduino"):
+    is_esp32 = is_esp32 or any(call.name == "set_microros_wifi_transports" and not call.uncertain for call in every)
+    if port in OF_ARDUINO and is_esp32 and (build.framework is None or build.framework.value == "arduino"):
         # FreeRTOS with 1000 ticks per second (espressif/arduino-esp32).
         return CodePlatform(port, "freertos", stated or Fraction(1000), ticks_are_stated=True)
     rtos = _operating_system(every) or _RTOS.get(port, "")

@@ -18,7 +18,7 @@ from amalthea_uros.source.walk import CodeWalk, FunctionCall
 MICROSECOND, MILLISECOND, SECOND = 10**6, 10**9, 10**12
 
 #: Of a stack of FreeRTOS that is counted in words.
-_WORD = 4
+WORD = 4
 #: CMSIS-RTOS2, ARM-software/CMSIS_5 CMSIS/RTOS2/Include/cmsis_os2.h.
 _CMSIS_PRIORITIES = {
     "osPriorityIdle": 1,
@@ -34,9 +34,10 @@ _FIRST_CMSIS_PRIORITIES = {name: number for number, name in enumerate(_CMSIS_PRI
 
 
 class _ThreadForm(NamedTuple):
-    """Positions of the arguments of a function that creates a thread; None: it has none."""
+    """Positions of the arguments of a function that creates a thread, such as what its entry is given; None: it has none."""
 
     entry: int
+    argument: int
     name: int | None = None
     stack: int | None = None
     priority: int | None = None
@@ -46,23 +47,24 @@ class _ThreadForm(NamedTuple):
 
 
 FORMS: Mapping[str, _ThreadForm] = {
-    "xTaskCreate": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
-    "xTaskCreateStatic": _ThreadForm(0, 1, 2, 4, rtos="freertos"),
-    "xTaskCreatePinnedToCore": _ThreadForm(0, 1, 2, 4, 6, rtos="freertos"),
-    "osThreadNew": _ThreadForm(0, attributes=2, rtos="freertos"),
-    "osThreadDef": _ThreadForm(1, 0, 4, 2, rtos="freertos"),
-    "K_THREAD_DEFINE": _ThreadForm(2, 0, 1, 6, rtos="zephyr"),
-    "k_thread_create": _ThreadForm(3, 0, 2, 7, rtos="zephyr"),
-    "pthread_create": _ThreadForm(2, 0),
+    "xTaskCreate": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
+    "xTaskCreateStatic": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
+    "xTaskCreatePinnedToCore": _ThreadForm(0, 3, 1, 2, 4, 6, rtos="freertos"),
+    "osThreadNew": _ThreadForm(0, 1, attributes=2, rtos="freertos"),
+    # What it is given comes with osThreadCreate.
+    "osThreadDef": _ThreadForm(1, 5, 0, 4, 2, rtos="freertos"),
+    "K_THREAD_DEFINE": _ThreadForm(2, 3, 0, 1, 6, rtos="zephyr"),
+    "k_thread_create": _ThreadForm(3, 4, 0, 2, 7, rtos="zephyr"),
+    "pthread_create": _ThreadForm(2, 3, 0),
 }
 
 
-def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | None:
+def thread_of(call: FunctionCall, walk: CodeWalk, unit: int | None) -> Thread | None:
     """The thread that a call creates.
 
     Parameters
     ----------
-    in_words : whether stacks of `xTaskCreate` are counted in words, as FreeRTOS does, and ESP-IDF does not
+    unit : in which stacks of `xTaskCreate` are counted, in bytes: words of FreeRTOS, but not in ESP-IDF; None if that is unknown
     """
     form = FORMS[call.name]
     entry = call.argument(form.entry)
@@ -74,7 +76,7 @@ def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | No
         attributes.get(key) or (call.argument(index) if index is not None else None)
         for key, index in (("name", form.name), ("stack_size", form.stack), ("priority", form.priority), ("core", form.core))
     )
-    factor = _WORD if in_words and call.name in ("xTaskCreate", "xTaskCreateStatic", "osThreadDef") else 1
+    factor = unit if call.name in ("xTaskCreate", "xTaskCreateStatic", "osThreadDef") else 1
     size = stack.number if stack is not None else None
     return Thread(
         name=(
@@ -85,7 +87,7 @@ def thread_of(call: FunctionCall, walk: CodeWalk, in_words: bool) -> Thread | No
         or callback.name,
         entry=callback.function,
         place=call.place,
-        stack=size * factor if size is not None and size > 0 else None,
+        stack=size * factor if size is not None and factor is not None and size > 0 else None,
         priority=_priority(priority, _FIRST_CMSIS_PRIORITIES if call.name == "osThreadDef" else _CMSIS_PRIORITIES),
         core=core.number if core is not None else None,
     )
@@ -113,7 +115,12 @@ def _priority(given: Expression | None, named: Mapping[str, int]) -> int | None:
 
 
 #: Functions that set a network; the bit rate of the link is not in the code.
-_UDP = ("set_microros_wifi_transports", "set_microros_native_ethernet_transports", "rmw_uros_options_set_udp_address")
+_UDP = (
+    "set_microros_wifi_transports",
+    "set_microros_native_ethernet_transports",
+    "set_microros_native_ethernet_udp_transports",
+    "rmw_uros_options_set_udp_address",
+)
 _SERIAL = ("set_microros_transports", "set_microros_serial_transports")
 SETTERS = frozenset({*_UDP, *_SERIAL, "rmw_uros_set_custom_transport"})
 #: The rate at which `set_microros_transports` of micro_ros_arduino opens the line: src/default_transport.cpp.
@@ -135,6 +142,10 @@ def transport_of(
     place = build.place if build is not None else call.place if call is not None else None
     if place is None:
         return None
+    keys = {_key(each, port, board) for each in every if each.name in SETTERS and each.uncertain}
+    if build is None and len(keys) > 1:
+        note = "by a condition that the sources do not decide"
+        return CodeTransport(key=None, values=(), note=note, place=place)
     key = build.value if build is not None else _key(call, port, board) if call is not None else None
     rate = _baud_rate(every, program)
     if call is not None and call.name == "set_microros_transports":

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.source.arrays import declared_sizes
+from amalthea_uros.source.arrays import WIDTHS, declared_sizes
+from amalthea_uros.source.constructions import made_class
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.syntax import descendants, parse, text_of
 
@@ -18,8 +19,6 @@ _CLASSES = ("class_specifier", "struct_specifier")
 _NESTED = ("pointer_declarator", "array_declarator", "reference_declarator", "parenthesized_declarator", "init_declarator")
 #: Classes that are members of each other.
 _MAX_DEPTH = 20
-#: Functions of C++ that make an object of the class between their brackets.
-_MAKERS = ("make_unique", "make_shared")
 _CHANGES = ("assignment_expression", "update_expression")
 
 
@@ -32,6 +31,7 @@ class CodeFunction:
     owner : the class of a method, "" for other functions
     parameters : their names, in order; "" for one without
     locals : names that are declared in it, parameters included
+    is_macro : whether it is a macro with parameters, whose text is read as that of a function
     """
 
     name: str
@@ -40,6 +40,7 @@ class CodeFunction:
     owner: str = ""
     parameters: tuple[str, ...] = ()
     locals: frozenset[str] = frozenset()
+    is_macro: bool = False
 
     @property
     def scope(self) -> str:
@@ -61,7 +62,10 @@ class CodeProgram:
         has two
     classes : of variables and members that are objects, or lead to one; "" where several have this name
     arrays : expressions of their lengths, by name; "" if that follows from the list that they are initialised with
+    widths : of the elements of arrays in bytes, by the name of the array, as far as their type shows it
     assigned : what is assigned to members, by their texts, such as `quality.reliability`
+    constructed : of a class with one constructor, what that gives its members
+    constructors : of each class
     statics : names that are known in one file only, with its path
     values : what variables are initialised with, by their keys
     changed : names that something assigns to, or whose address is taken: what they are initialised with may not be their value
@@ -75,7 +79,10 @@ class CodeProgram:
     objects: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
     classes: dict[str, str] = field(default_factory=dict)
     arrays: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    widths: dict[str, int] = field(default_factory=dict)
     assigned: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    constructed: dict[str, dict[str, Node]] = field(default_factory=lambda: defaultdict(dict))
+    constructors: dict[str, list[CodeFunction]] = field(default_factory=lambda: defaultdict(list))
     statics: set[tuple[str, str]] = field(default_factory=set)
     values: dict[str, tuple[Node, CodeFunction | SourceFile]] = field(default_factory=dict)
     changed: set[str] = field(default_factory=set)
@@ -108,14 +115,37 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
         program.files.append((file, root))
         for node in descendants(root):
             _note(program, file, node)
+    for name, (file, node) in program.function_macros.items():
+        function = _function_of_macro(name, file, node)
+        if function is not None:
+            program.functions[name].append(function)
     return program
+
+
+def _function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction | None:
+    """A macro that calls functions of rclc, as if it were a function; None if its text is no statement."""
+    value, parameters = node.child_by_field_name("value"), node.child_by_field_name("parameters")
+    text = text_of(value) if value is not None else ""
+    if value is None or parameters is None or "rclc_" not in text or "##" in text:
+        return None
+    # Its code has the rows that it has in the file.
+    code = f"{chr(10) * value.start_point.row}void f{text_of(parameters)} {{ {text.replace(chr(92), chr(32))}; }}"
+    root = parse(SourceFile(file.path, code.encode()))
+    body = next((each for each in descendants(root) if each.type == "compound_statement"), None)
+    if body is None or body.has_error:
+        return None
+    names = tuple(text_of(each) for each in parameters.named_children)
+    return CodeFunction(name, file, body, parameters=names, locals=frozenset(names), is_macro=True)
 
 
 def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
     if node.type in ("declaration", "field_declaration"):
         _note_objects(program, file, node)
+        kind = node.child_by_field_name("type")
         for array, size in declared_sizes(node).items():
             program.arrays[array].add(size)
+            if kind is not None and text_of(kind) in WIDTHS:
+                program.widths[array] = WIDTHS[text_of(kind)]
     match node.type:
         case "new_expression" | "template_function":
             _note_made(program, file, node)
@@ -132,8 +162,7 @@ def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
             if _enclosing(node, ("function_definition", "lambda_expression")) is None:
                 _note_variables(program, file, node)
         case "field_declaration":
-            owner = _class_around(node)
-            program.members[owner] |= dict.fromkeys(text_of(name) for name, _ in declared(node))
+            _note_members(program, file, node)
         case "enumerator":
             name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
             if name is not None and value is not None:
@@ -160,7 +189,8 @@ def _counted(node: Node) -> str:
 def _note_function(program: CodeProgram, file: SourceFile, node: Node) -> None:
     declarator, body = node.child_by_field_name("declarator"), node.child_by_field_name("body")
     while declarator is not None and declarator.type != "function_declarator":
-        declarator = declarator.child_by_field_name("declarator")
+        # A function that returns a reference has no field for what is around its declarator.
+        declarator = declarator.child_by_field_name("declarator") or next(iter(declarator.named_children), None)
     named = declarator.child_by_field_name("declarator") if declarator is not None else None
     if declarator is None or named is None or body is None:
         return
@@ -168,11 +198,38 @@ def _note_function(program: CodeProgram, file: SourceFile, node: Node) -> None:
     owner = qualified[-2] if len(qualified) > 1 else _class_around(node)
     function = function_of(qualified[-1].strip(), file, declarator, body, owner)
     program.functions[function.name].append(function)
+    if function.name == owner:
+        program.constructors[owner].append(function)
+        program.constructed[owner] |= _given_to_members(node, body)
     for statement in descendants(body):
         if statement.type == "declaration":
             for name, value in declared(statement):
                 if value is not None:
                     program.values[function.scope + text_of(name)] = value, function
+
+
+def _note_members(program: CodeProgram, file: SourceFile, node: Node) -> None:
+    owner, value = _class_around(node), node.child_by_field_name("default_value")
+    names = [text_of(name) for name, _ in declared(node)]
+    program.members[owner] |= dict.fromkeys(names)
+    if value is not None and len(names) == 1:
+        program.values[f"{owner}::{names[0]}"] = value, file
+
+
+def _given_to_members(constructor: Node, body: Node) -> dict[str, Node]:
+    """The values that a constructor gives members of its class, in the list before its body, or by statements of it."""
+    given = {}
+    for part in constructor.named_children:
+        for each in part.named_children if part.type == "field_initializer_list" else ():
+            if each.named_child_count == 2:
+                given[text_of(each.named_children[0])] = each.named_children[1]
+    for statement in body.named_children:
+        assignment = next(iter(statement.named_children), None)
+        if statement.type == "expression_statement" and assignment is not None and assignment.type == "assignment_expression":
+            left, right = assignment.child_by_field_name("left"), assignment.child_by_field_name("right")
+            if left is not None and right is not None:
+                given[text_of(left).removeprefix("this->")] = right
+    return given
 
 
 def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node, owner: str) -> CodeFunction:
@@ -189,13 +246,16 @@ def function_of(name: str, file: SourceFile, declarator: Node | None, body: Node
 
 def _note_objects(program: CodeProgram, file: SourceFile, node: Node) -> None:
     kind = node.child_by_field_name("type")
-    if kind is None or kind.type not in ("type_identifier", "qualified_identifier", *_CLASSES):
+    if kind is None or kind.type not in ("type_identifier", "qualified_identifier", "template_type", *_CLASSES):
         return
-    name = text_of(kind.child_by_field_name("name") or kind).rpartition("::")[2]
+    named = kind.child_by_field_name("name")
+    if named is None and kind.type in _CLASSES:
+        named = next((variable for variable, _ in declared(node)), None)
+    name = text_of(named or kind).rpartition("::")[2]
     for variable, _ in declared(node):
         known = program.classes.setdefault(text_of(variable), name)
         program.classes[text_of(variable)] = name if known == name else ""
-    around = _class_around(node)
+    around = _class_around(node) if node.type == "field_declaration" else ""
     for declarator in node.children_by_field_name("declarator"):
         types = {each.type for each in descendants(declarator)}
         if not types & {"pointer_declarator", "reference_declarator", "function_declarator"}:
@@ -205,13 +265,8 @@ def _note_objects(program: CodeProgram, file: SourceFile, node: Node) -> None:
 
 def _note_made(program: CodeProgram, file: SourceFile, node: Node) -> None:
     """Objects that are made while the program runs."""
-    kind = node.child_by_field_name("type")
-    if node.type == "template_function":
-        name, arguments = node.child_by_field_name("name"), node.child_by_field_name("arguments")
-        given = arguments.named_children[:1] if arguments is not None else []
-        kind = given[0] if given and name is not None and text_of(name) in _MAKERS else None
-    if kind is not None:
-        program.objects[text_of(kind).rpartition("::")[2]][f"{file.path}:{node.start_byte}"] = _class_around(node)
+    if made := made_class(node):
+        program.objects[made][f"{file.path}:{node.start_byte}"] = _class_around(node)
 
 
 def _note_variables(program: CodeProgram, file: SourceFile, node: Node) -> None:
@@ -230,8 +285,13 @@ def _note_change(program: CodeProgram, node: Node) -> None:
     value = node.child_by_field_name("right")
     if target is not None and target.type == "field_expression" and value is not None:
         program.assigned[text_of(target)].add(text_of(value))
-    if target is not None:
+    if target is not None and not _is_in_constructor(node):
         program.changed.add(text_of(target).rpartition(".")[2].rpartition(">")[2])
+
+
+def _is_in_constructor(node: Node) -> bool:
+    around = _enclosing(node, ("function_definition",))
+    return around is not None and around.child_by_field_name("type") is None and bool(_class_around(around))
 
 
 def declared(node: Node) -> Iterator[tuple[Node, Node | None]]:
@@ -248,8 +308,12 @@ def declared(node: Node) -> Iterator[tuple[Node, Node | None]]:
 def _class_around(node: Node) -> str:
     around = _enclosing(node, _CLASSES)
     name = around.child_by_field_name("name") if around is not None else None
-    if name is None and around is not None and around.parent is not None and around.parent.type == "type_definition":
-        name = around.parent.child_by_field_name("declarator")
+    parent = around.parent if name is None and around is not None else None
+    if parent is not None and parent.type == "type_definition":
+        name = parent.child_by_field_name("declarator")
+    elif parent is not None:
+        # One without a name is called as its first object.
+        name = next((variable for variable, _ in declared(parent)), None)
     return text_of(name) if name is not None else ""
 
 

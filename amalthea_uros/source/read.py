@@ -14,18 +14,19 @@ from amalthea_uros.source.executors import ACTIONS, SPINS, executor_of
 from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeFacts, CodeOption, Thread
 from amalthea_uros.source.files import SourceFile, Sources
 from amalthea_uros.source.flaws import WITH_HANDLES, flaws, not_understood
-from amalthea_uros.source.loops import SENDS, add_senders, add_spins
+from amalthea_uros.source.locks import LOCKS
+from amalthea_uros.source.loops import SENDS, add_lock, add_senders, add_spins
 from amalthea_uros.source.message_flaws import message_flaws
 from amalthea_uros.source.messages import defined_types
-from amalthea_uros.source.platform import platform_of
-from amalthea_uros.source.ports import FORMS, SETTERS, thread_of, transport_of
+from amalthea_uros.source.platform import OF_ARDUINO, platform_of
+from amalthea_uros.source.ports import FORMS, SETTERS, WORD, thread_of, transport_of
 from amalthea_uros.source.program import CodeProgram, read_program
 from amalthea_uros.source.sleeps import SLEEPS
-from amalthea_uros.source.walk import CodeWalk, FunctionCall
+from amalthea_uros.source.walk import ENTRIES, CodeWalk, FunctionCall
 
-_NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, "Serial.begin"})
-#: How the entry of a program can be called; two of one name are two programs.
-_ENTRIES = ("main", "app_main", "appMain", "setup")
+_NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, *LOCKS, "Serial.begin"})
+#: What FreeRTOS.h and task.h define alike for all controllers.
+_CONSTANTS = {"tskIDLE_PRIORITY": "0"}
 #: rclc_parameter/include/rclc_parameter/rclc_parameter.h of ros2/rclc; by the distribution.
 _SERVER_HANDLES = "RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES"
 #: A place in an array that is not constant.
@@ -49,7 +50,9 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
     if not program.macros[_SERVER_HANDLES]:
         program.macros[_SERVER_HANDLES].add(str(parameter_services(build.ros.value if build.ros is not None else None)))
-    walk = CodeWalk(program, _NAMES)
+    for name, stated in (_CONSTANTS | build.macros).items():
+        program.macros[name].add(stated)
+    walk = CodeWalk(program, _NAMES, {name: (form.entry, form.argument) for name, form in FORMS.items()})
     walk.all()
     facts.findings += [*sources.findings, *walk.findings, *_several_programs(program), *build.findings]
     facts.ros, facts.board, facts.clock = build.ros, build.board, build.clock
@@ -58,10 +61,11 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     facts.port, facts.rtos, facts.tick_rate, facts.ticks_are_stated = platform_of(program, walk.calls, build, name)
     _note_objects(facts, walk)
     add_spins(facts, walk.calls)
-    threads = _note_threads(facts, walk)
+    _note_threads(facts, walk)
     _note_main_thread(facts, walk, build)
     _note_publications(facts, walk)
-    add_senders(facts, walk.calls, threads)
+    add_senders(facts, walk.calls)
+    add_lock(facts, walk)
     facts.transport = transport_of(walk.calls, program, build.transport, facts.port, name)
     _note_options(facts, sources, build, name)
     facts.findings += [*not_understood(walk, facts), *flaws(facts, walk), *message_flaws(facts, program)]
@@ -120,17 +124,18 @@ def _act(facts: CodeFacts, walk: CodeWalk, names: Iterable[str]) -> None:
             ACTIONS[call.name](facts, call, walk)
 
 
-def _note_threads(facts: CodeFacts, walk: CodeWalk) -> dict[str, Thread]:
-    """Give each executor the thread whose entry leads to its spin; all threads by the scopes of their entries."""
+def _note_threads(facts: CodeFacts, walk: CodeWalk) -> None:
+    """The threads, and for each executor the one whose entry leads to its spin."""
     is_idf = any(b'"freertos/' in file.text or b"<freertos/" in file.text for file, _ in walk.program.files)
-    threads = [thread_of(call, walk, not is_idf) for call in walk.calls if call.name in FORMS]
-    by_entry: dict[str, Thread] = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
+    # Arduino has FreeRTOS of ESP-IDF on some boards, and a library for it on others.
+    unit = 1 if is_idf or (facts.port in OF_ARDUINO and facts.ticks_are_stated) else None if facts.port in OF_ARDUINO else WORD
+    threads = [thread_of(call, walk, unit) for call in walk.calls if call.name in FORMS]
+    facts.threads = {each.entry.scope: each for each in threads if each is not None and each.entry is not None}
     for call in walk.calls:
         given = call.argument(0)
         executor = facts.executors.get(given.key) if call.name in SPINS and given is not None else None
         if executor is not None and call.root is not None:
-            executor.thread = executor.thread or by_entry.get(call.root.scope)
-    return by_entry
+            executor.thread = executor.thread or facts.threads.get(call.root.scope)
 
 
 def _note_main_thread(facts: CodeFacts, walk: CodeWalk, build: BuildFacts) -> None:
@@ -177,7 +182,7 @@ def _note_publications(facts: CodeFacts, walk: CodeWalk) -> None:
 
 def _several_programs(program: CodeProgram) -> list[Finding]:
     found = []
-    for name in _ENTRIES:
+    for name in set(ENTRIES) - {"loop"}:
         entries = [each for each in program.functions.get(name, ()) if not each.owner]
         if len({each.file.path for each in entries}) > 1:
             place = entries[1].file.location(entries[1].body.start_point.row, 0)

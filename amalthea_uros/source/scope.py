@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
+from operator import eq, ge, gt, le, lt, ne
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.source.arrays import counted_array, elements_of, member_of
+from amalthea_uros.source.arrays import counted_array, elements_of, member_of, sized_operand
+from amalthea_uros.source.constructions import arguments_of, made_class
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram
 from amalthea_uros.source.syntax import descendants, parse_expression, text_of
@@ -26,6 +29,11 @@ _FACTORS = {
 }
 #: The binding of the object whose method is called.
 THIS = "this"
+#: Functions that write a text to a buffer -> the position of its format; and those that make a text of a value.
+_PRINTS = {"snprintf": 2, "sprintf": 1}
+_TEXTS = ("String", "string", "to_string")
+_FORMAT = re.compile(r"(%(?:%|\d*(?:l|ll|h|hh|z)?[dius]))")
+_COMPARISONS = {"==": eq, "!=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}
 _WRAPPERS = ("parenthesized_expression", "cast_expression", "pointer_expression")
 
 
@@ -76,12 +84,16 @@ class Expression:
         if len(functions) != 1 or self.depth > _MAX_DEPTH:
             return self
         function = functions[0]
+        if function.name == function.owner:
+            return self
         statements = [child for child in function.body.named_children if child.type != "comment"]
         returns = [each for each in descendants(function.body) if each.type == "return_statement"]
         if len(returns) != 1 or statements[-1:] != returns or not returns[0].named_children:
             return self
         given = text_of(returns[0].named_children[0])
-        if len(statements) > 1 and (not given.startswith("&") or given[1:].strip() in function.locals):
+        name = given.removeprefix("&").strip()
+        stays = re.search(rf"\bstatic\b[^;]*\b{re.escape(name)}\b", text_of(function.body)) is not None
+        if len(statements) > 1 and not stays and (not given.startswith("&") or name in function.locals):
             return self
         bindings: dict[str, Binding] = dict(zip(function.parameters, map(self.at, arguments), strict=False))
         called_as = self.node.child_by_field_name("function")
@@ -136,10 +148,12 @@ class Expression:
             return bound.owner
         if own.node.type == "subscript_expression":
             element = own._element()
-            if element is not None and element.node.type != "initializer_list":
+            if element is not None and element.node.type not in ("initializer_list", "argument_list"):
                 return element.owner
             array = own.node.child_by_field_name("argument")
             return own.at(array).owner if array is not None else ""
+        if (made := made_class(own.node)) in self.program.members:
+            return made
         return self.program.classes.get(own.text.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2], "")
 
     def _only_class(self, member: str) -> str:
@@ -176,8 +190,13 @@ class Expression:
         node, place = self.program.values.get(key, (None, None))
         if node is None or place is None or name in self.program.changed or self.depth > _MAX_DEPTH:
             return key
-        if node.type not in ("pointer_expression", "call_expression") or (
-            node.type == "pointer_expression" and not text_of(node).startswith("&")
+        plain = node.child_by_field_name("value") if node.type == "cast_expression" else node
+        is_parameter = (
+            plain is not None and isinstance(self.bindings.get(text_of(plain)), Expression) and place is self.function
+        )
+        if not is_parameter and (
+            node.type not in ("pointer_expression", "call_expression")
+            or (node.type == "pointer_expression" and not text_of(node).startswith("&"))
         ):
             return key
         function, file = (place, place.file) if isinstance(place, CodeFunction) else (None, place)
@@ -211,7 +230,8 @@ class Expression:
         own = self.core
         if own.node.type == "subscript_expression" and own.depth <= _MAX_DEPTH:
             return own._element() or own
-        if own.node.type == "field_expression" and own.depth <= _MAX_DEPTH and (member := own._member()) is not None:
+        member = own._member() if own.depth <= _MAX_DEPTH else None
+        if member is not None:
             return member
         if own.node.type not in ("identifier", "field_expression", "qualified_identifier") or own.depth > _MAX_DEPTH:
             return own
@@ -246,9 +266,13 @@ class Expression:
     def _member(self) -> Expression | None:
         """The member of a structure that is initialised with a list, and to which nothing assigns a value."""
         holder, field = self.node.child_by_field_name("argument"), self.node.child_by_field_name("field")
-        if holder is None or field is None or text_of(field) in self.program.changed or holder.type == "this":
+        if self.node.type == "identifier" or (holder is not None and holder.type == "this"):
+            return self._own_member(text_of(field or self.node))
+        if holder is None or field is None or text_of(field) in self.program.changed:
             return None
         values = self.at(holder).resolved
+        if made := values._made(self.at(holder).owner, text_of(field)):
+            return made
         if values.node.type != "initializer_list":
             return None
         base = self.at(holder).core
@@ -257,6 +281,37 @@ class Expression:
         order = tuple(self.program.members.get(self.program.classes.get(base.name, ""), ()))
         value = member_of(values.node, text_of(field), order)
         return values.at(value).resolved if value is not None else None
+
+    def _own_member(self, name: str) -> Expression | None:
+        """The value that the object whose method it is in was made with for a member of it."""
+        owner = self.function.owner if self.function is not None else ""
+        if not owner or name in self.program.changed or name not in self.program.members.get(owner, ()):
+            return None
+        if self.function is not None and name in self.function.locals:
+            return None
+        holder = self.bindings.get(THIS)
+        if isinstance(holder, Expression):
+            return holder.resolved._made(owner, name)
+        only = [variable for variable, kind in self.program.classes.items() if kind == owner]
+        if len(only) != 1 or self.program.number_of_objects(owner) > 1:
+            return None
+        node, place = self.program.values.get(only[0], (self.node, self.file))
+        file = place.file if isinstance(place, CodeFunction) else place
+        return Expression(self.program, node, file, depth=self.depth + 1)._made(owner, name)
+
+    def _made(self, owner: str, member: str) -> Expression | None:
+        """The value that the constructor of a class gives a member of an object, made with the arguments of this expression."""
+        constructors, given = self.program.constructors.get(owner, ()), self.program.constructed.get(owner, {}).get(member)
+        # Where they are unknown, what does not depend on them is known all the same.
+        arguments = arguments_of(self.node)
+        if len(constructors) != 1 or given is None or self.depth > _MAX_DEPTH:
+            return None
+        constructor = constructors[0]
+        bindings: dict[str, Binding] = dict(zip(constructor.parameters, map(self.at, arguments), strict=False))
+        is_object = self.program.classes.get(member) in self.program.members
+        if given.type in ("argument_list", "initializer_list") and given.named_child_count == 1 and not is_object:
+            given = given.named_children[0]
+        return Expression(self.program, given, constructor.file, constructor, bindings, self.depth + 1).resolved
 
     @property
     def length(self) -> int | None:
@@ -273,7 +328,7 @@ class Expression:
             return None
         size = next(iter(sizes))
         if size:
-            parsed = parse_expression(size)
+            parsed = parse_expression(size, is_c=False)
             return own.at(parsed).number if parsed is not None else None
         values = own.resolved.node
         return len(elements_of(values)) if values.type == "initializer_list" else None
@@ -282,6 +337,8 @@ class Expression:
     def string(self) -> str | None:
         """The text that it stands for, None if that is not constant."""
         own = self.resolved
+        if own.node.type in ("identifier", "binary_expression", "call_expression") and own.depth <= _MAX_DEPTH:
+            return own._made_text()
         if own.node.type == "concatenated_string":
             strings = [own.at(child).string for child in own.node.named_children]
             known = [each for each in strings if each is not None]
@@ -295,6 +352,41 @@ class Expression:
             parts.append(text_of(child))
         return "".join(parts)
 
+    def _made_text(self) -> str | None:
+        """The text that a buffer gets from `snprintf`, or that parts are joined to."""
+        if self.node.type == "identifier":
+            return self._printed()
+        if self.node.type == "binary_expression":
+            parts = [self.at(child)._as_text() for child in self.node.named_children]
+            is_sum = text_of(self.node.children[1]) == "+"
+            return f"{parts[0]}{parts[1]}" if is_sum and len(parts) == 2 and None not in parts else None
+        name, arguments = called(self.node)
+        function = self.node.child_by_field_name("function")
+        if name.endswith(".c_str") and function is not None and (text := function.child_by_field_name("argument")) is not None:
+            return self.at(text).string
+        return self.at(arguments[0])._as_text() if name.rpartition("::")[2] in _TEXTS and len(arguments) == 1 else None
+
+    def _as_text(self) -> str | None:
+        number = self.number
+        return self.string if number is None else str(number)
+
+    def _printed(self) -> str | None:
+        """The text that the last call of `snprintf` before this place in the same function writes to a buffer."""
+        calls = [
+            arguments
+            for node in (descendants(self.function.body) if self.function is not None else ())
+            if node.type == "call_expression" and node.start_byte < self.node.start_byte
+            for name, arguments in [called(node)]
+            if name.rpartition("::")[2] in _PRINTS and arguments and text_of(arguments[0]) == self.text
+            for arguments in [arguments[_PRINTS[name.rpartition("::")[2]] :]]
+        ]
+        form = self.at(calls[-1][0]).string if calls and calls[-1] else None
+        if form is None:
+            return None
+        values = iter([self.at(each)._as_text() for each in calls[-1][1:]])
+        parts = [_formatted(part, values) for part in _FORMAT.split(form)]
+        return "".join(each for each in parts if each is not None) if None not in parts else None
+
     @property
     def number(self) -> int | None:
         """The whole number that it stands for, None if that is not constant."""
@@ -307,9 +399,14 @@ class Expression:
             return bound if isinstance(bound, int) else None
         if node.type == "number_literal":
             return literal(text_of(node))
+        if node.type in ("true", "false"):
+            return int(node.type == "true")
         if node.type == "unary_expression" and (inner := node.child_by_field_name("argument")) is not None:
             value = own.at(inner).number
-            return None if value is None else {"-": -value, "+": value}.get(text_of(node.children[0]))
+            return None if value is None else {"-": -value, "+": value, "!": int(not value)}.get(text_of(node.children[0]))
+        if (whole := sized_operand(node)) is not None:
+            length, width = own.at(whole).length, self.program.widths.get(text_of(whole))
+            return length * width if length is not None and width is not None else None
         if node.type in ("binary_expression", "call_expression") and (array := counted_array(node)) is not None:
             return own.at(array).length
         if node.type == "binary_expression":
@@ -363,6 +460,16 @@ def literal(text: str) -> int | None:
     return int(real) if abs(real) < _GREATEST and real == int(real) else None
 
 
+def _formatted(part: str, values: Iterator[str | None]) -> str | None:
+    """A part of a format, with the next value if it is a conversion."""
+    if _FORMAT.fullmatch(part) is None:
+        return part
+    if part == "%%":
+        return "%"
+    value, width = next(values, None), part[1:].rstrip("diuslhz")
+    return value.rjust(int(width or 0), "0" if width.startswith("0") else " ") if value is not None else None
+
+
 def _calculated(first: int, operator: str, second: int) -> int | None:
     match operator:
         case "+":
@@ -375,6 +482,8 @@ def _calculated(first: int, operator: str, second: int) -> int | None:
             return abs(first) // abs(second) * (1 if (first < 0) is (second < 0) else -1)
         case "%" if second > 0 and first >= 0:
             return first % second
+        case "==" | "!=" | "<" | "<=" | ">" | ">=":
+            return int(_COMPARISONS[operator](first, second))
         case "<<" if 0 <= second < 64:
             return first << second
         case ">>" if 0 <= second < 64:

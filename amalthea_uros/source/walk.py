@@ -26,10 +26,23 @@ Branch: TypeAlias = tuple[Mark, Mark]
 _MAX_DEPTH = 350
 #: Iterations of a loop that are followed one by one, because they create something each.
 _MAX_ITERATIONS = 64
+#: What a loop is called that waits busily for a time, and the functions that read a clock.
+BUSY_LOOP = "while"
+CLOCKS = frozenset(
+    [
+        *("millis", "micros", "HAL_GetTick", "xTaskGetTickCount", "osKernelGetTickCount", "k_uptime_get", "k_uptime_get_32"),
+        *("esp_timer_get_time", "time_us_64", "time_us_32", "get_absolute_time", "uxr_millis", "rmw_uros_epoch_millis"),
+    ]
+)
+#: The branch of a choice that what follows a branch that leaves the block is in.
+_AFTER: Mark = ("", 0)
+_LITERALS = ("true", "false", "number_literal")
 _LOOPS = ("while_statement", "do_statement", "for_statement", "for_range_loop")
 _CHOICES = ("if_statement", "switch_statement", "conditional_expression")
 #: Calls of functions of the sources that are followed; those of functions that call others twice grow without limit.
 _MAX_ENTRIES = 5_000
+#: How the entry of a program can be called; methods can have the same names.
+ENTRIES = ("main", "app_main", "appMain", "setup", "loop")
 #: Functions of the application are followed if they lead to calls whose names begin so, or are among these.
 _RELEVANT = ("rclc_", "rcl_", "rmw_", "set_microros_")
 
@@ -67,8 +80,8 @@ class FunctionCall:
         return any(branches.get(choice, branch) != branch for choice, branch in other.conditions)
 
     def always_with(self, other: FunctionCall) -> bool:
-        """Whether it is made whenever the code of another call is reached."""
-        return set(self.conditions) <= set(other.conditions)
+        """Whether it is made whenever the code of another call is reached, unless that is left early."""
+        return {each for each in self.conditions if each[1] != _AFTER} <= set(other.conditions)
 
     def argument(self, index: int) -> Expression | None:
         """An argument, None if there are fewer."""
@@ -97,8 +110,17 @@ class CodeWalk:
     findings : code that is nested too deeply, or too much
     """
 
-    def __init__(self, program: CodeProgram, names: frozenset[str]) -> None:
+    def __init__(self, program: CodeProgram, names: frozenset[str], threads: Mapping[str, tuple[int, int]]) -> None:
+        """Begin.
+
+        Parameters
+        ----------
+        names : of functions that matter, besides those of micro-ROS
+        threads : of functions that start threads, the positions of their entry and of what that is given
+        """
         self.program = program
+        self._threads = threads
+        self._given: dict[str, Expression] = {}
         self.calls: list[FunctionCall] = []
         self.seen: set[tuple[str, int]] = set()
         self.inactive: set[tuple[str, int, int]] = set()
@@ -116,9 +138,16 @@ class CodeWalk:
             self._children(root, _WalkPosition(file, None, {}))
         for group in self.program.functions.values():
             group[:] = [function for function in group if not self._is_inactive(function)]
+        entries = dict.fromkeys(self._thread_entries())
         for function in self.program.every_function():
-            if function.name not in self._relevant.called and function in self._relevant.functions:
+            is_entry = not function.owner and function.name in ENTRIES
+            is_root = is_entry or (function.name not in self._relevant.called and not function.is_macro)
+            if is_root and function in self._relevant.functions and function.name not in entries:
                 self.function(function)
+        for name in entries:
+            for function in self.program.functions.get(name, ()):
+                if function in self._relevant.functions:
+                    self.function(function)
         # Lambdas that are the code of threads; what they call is called by others only there.
         while self._started:
             self.function(self._started.pop(0))
@@ -128,8 +157,17 @@ class CodeWalk:
         return any(path == other and start <= position < end for other, start, end in self.inactive)
 
     def function(self, function: CodeFunction) -> None:
-        """Walk through a function."""
-        self._visit(function.body, _WalkPosition(function.file, function, {}, (function,)))
+        """Walk through a function; the code of a thread has what it is given."""
+        given = self._given.get(function.name)
+        bindings: dict[str, Binding] = {function.parameters[0]: given} if given is not None and function.parameters else {}
+        self._visit(function.body, _WalkPosition(function.file, function, bindings, (function,)))
+
+    def _thread_entries(self) -> Iterator[str]:
+        for _, root in self.program.files:
+            for node in descendants(root):
+                name, arguments = called(node) if node.type == "call_expression" else ("", [])
+                if name in self._threads and self._threads[name][0] < len(arguments):
+                    yield text_of(arguments[self._threads[name][0]]).lstrip("&")
 
     def calls_from(self, function: CodeFunction) -> list[FunctionCall]:
         """The calls on the paths that begin with a function."""
@@ -161,12 +199,22 @@ class CodeWalk:
             self._loop(node, context)
         elif node.type in _CHOICES:
             self._choice(node, context)
+        elif node.type in ("compound_statement", "case_statement"):
+            self._block(node, context)
         elif node.type == "lambda_expression":
             self._lambda(node, context)
         elif node.type == "function_definition" or (node.type == "field_declaration_list" and context.function is not None):
             return
         else:
             self._children(node, context)
+
+    def _block(self, node: Node, context: _WalkPosition) -> None:
+        """The statements of a block; those after a branch that leaves it are not made with that branch."""
+        for child in node.named_children:
+            self._visit(child, context)
+            branch = child.child_by_field_name("consequence") if child.type == "if_statement" else None
+            if branch is not None and child.child_by_field_name("alternative") is None and _leaves(branch):
+                context = replace(context, conditions=(*context.conditions, (_mark(child, context), _AFTER)))
 
     def _stop(self, node: Node, context: _WalkPosition) -> None:
         reason = "there is too much code" if min(self._left, self._entries) < 0 else "the code is nested too deeply"
@@ -202,6 +250,8 @@ class CodeWalk:
         if body is None:
             return
         condition = node.child_by_field_name("condition")
+        if condition is not None and node.type != "for_statement" and self._is_timed(condition, body):
+            self._add(BUSY_LOOP, (), node, context)
         if node.type == "do_statement" and condition is not None and self._expression(condition, context).number == 0:
             # The usual form of a macro, or of a block that `break` leaves.
             self._visit(body, context)
@@ -213,6 +263,11 @@ class CodeWalk:
                 self._visit(body, replace(context, bindings={**context.bindings, name: value}))
         else:
             self._visit(body, replace(context, loops=(*context.loops, _mark(node, context))))
+
+    def _is_timed(self, condition: Node, body: Node) -> bool:
+        """Whether a loop does nothing that matters until a clock shows a time."""
+        inner = set(_called_names(body))
+        return not inner & self._relevant.called_with_effect and any(name in CLOCKS for name in _called_names(condition))
 
     def _elements(self, node: Node, context: _WalkPosition) -> tuple[str, Sequence[Binding]] | None:
         """The variable of a loop over an array, and the elements."""
@@ -249,11 +304,32 @@ class CodeWalk:
         condition = node.child_by_field_name("condition")
         if condition is not None:
             self._visit(condition, context)
+        if (
+            condition is not None
+            and node.type != "switch_statement"
+            and (decided := self._decided(condition, context)) is not None
+        ):
+            taken = node.child_by_field_name("consequence" if decided else "alternative")
+            if taken is not None:
+                self._visit(taken, context)
+            return
         body = node.child_by_field_name("body") if node.type == "switch_statement" else None
         for child in (body or node).named_children:
             if condition is None or child.id != condition.id:
                 branch = _mark(node, context), _mark(child, context)
                 self._visit(child, replace(context, conditions=(*context.conditions, branch)))
+
+    def _decided(self, condition: Node, context: _WalkPosition) -> bool | None:
+        """Whether a condition holds that only depends on constants, counters and what parameters are given; None if unknown."""
+        condition = condition.child_by_field_name("value") or condition
+        for each in descendants(condition):
+            if each.type in ("identifier", "field_expression", "subscript_expression", "pointer_expression"):
+                bound = context.bindings.get(text_of(each))
+                is_value = isinstance(bound, int) or (bound is not None and bound.node.type in _LITERALS)
+                if each.type != "identifier" or not (is_value or self.program.macros.get(text_of(each))):
+                    return None
+        number = self._expression(condition, context).number
+        return None if number is None else bool(number)
 
     def _lambda(self, node: Node, context: _WalkPosition) -> None:
         """Code that is called later; what creates a callback of it finds it by its place."""
@@ -278,13 +354,18 @@ class CodeWalk:
             if callee not in context.stack and callee in self._relevant.functions:
                 self._enter(callee, expressions, self._holder(node, callee, context), context)
             return
+        if name in self._threads and self._threads[name][1] < len(expressions):
+            entry, given = self._threads[name]
+            self._given.setdefault(expressions[entry].name, expressions[given])
         if name in self._names:
             self._started += [self.lambdas[text] for given in arguments if (text := text_of(given)) in self.lambdas]
-        plain = name.removeprefix("::").removeprefix("std::").rpartition("this->")[2]
+        self._add(name.removeprefix("::").removeprefix("std::").rpartition("this->")[2], expressions, node, context)
+
+    def _add(self, name: str, arguments: tuple[Expression, ...], node: Node, context: _WalkPosition) -> None:
         self.calls.append(
             FunctionCall(
-                plain,
-                expressions,
+                name,
+                arguments,
                 location_of(context.file, node),
                 context.stack[0] if context.stack else None,
                 context.function,
@@ -349,10 +430,12 @@ class Relevance:
     ----------
     functions : those that lead to calls that matter
     called : names of functions that others call
+    called_with_effect : names of functions that matter, and of those that lead to them
     """
 
     functions: frozenset[CodeFunction]
     called: frozenset[str]
+    called_with_effect: frozenset[str]
 
 
 def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance:
@@ -361,7 +444,7 @@ def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance
     callers: dict[str, set[CodeFunction]] = {}
     for function, inner in calls.items():
         for name in inner:
-            if name in program.functions and name != function.name:
+            if any(each is not function for each in program.functions.get(name, ())):
                 callers.setdefault(name, set()).add(function)
     found = {function for function, inner in calls.items() if any(n.startswith(_RELEVANT) or n in names for n in inner)}
     waiting = list(found)
@@ -370,13 +453,21 @@ def relevant_functions(program: CodeProgram, names: frozenset[str]) -> Relevance
             if caller not in found:
                 found.add(caller)
                 waiting.append(caller)
-    return Relevance(frozenset(found), frozenset(callers))
+    every = {name for inner in calls.values() for name in inner}
+    effects = {name for name in every if name.startswith(_RELEVANT) or name in names} | {each.name for each in found}
+    return Relevance(frozenset(found), frozenset(callers), frozenset(effects))
 
 
 def _called_names(body: Node) -> Iterator[str]:
     for node in descendants(body):
         if node.type == "call_expression":
             yield called(node)[0].rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
+
+
+def _leaves(branch: Node) -> bool:
+    """Whether a branch ends with a statement that leaves the block around it."""
+    last = branch.named_children[-1] if branch.type == "compound_statement" and branch.named_children else branch
+    return last.type in ("return_statement", "break_statement", "continue_statement")
 
 
 def _mark(node: Node, context: _WalkPosition) -> Mark:

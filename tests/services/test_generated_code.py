@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+from pathlib import Path
 
 import pytest
 from support import ROOT
@@ -27,7 +28,7 @@ middleware:
       {thread}
       max_handles: 20
       loop: {loop}
-      order: [on_scan, control, on_mode, on_answer, wake]
+      order: [on_scan, control, on_mode, on_answer, wake, on_move]
     {second}
   transport: {{serial: {{baud_rate: 115200}}}}
   limits: {{{limits}}}
@@ -44,8 +45,13 @@ application:
       services: [{{name: on_mode, type: std_srvs/srv/SetBool, bounds: {{string: 9}}, TIMES}}]
       clients: [{{name: on_answer, service: ask, request_size: 3 B, response_size: 5 B, TIMES}}]
       guard_conditions: [{{name: wake, TIMES}}]
+      action_servers: [{{name: on_move, goal_size: 20 B, result_size: 6 B, feedback_size: 18 B, TIMES}}]
       parameter_server: {{rate: 1 Hz, execution_time: 1 ms}}
 """.replace("TIMES", "rate: 1 Hz, execution_time: 1 ms")
+ACTION_CLIENT = (
+    "action_clients: [{name: on_done, action: move, goal_size: 20 B, result_size: 6 B, feedback_size: 18 B, "
+    "rate: 1 Hz, execution_time: 1 ms}]"
+)
 LIMITS = ", ".join(f"RMW_UXRCE_MAX_{each}: 30" for each in ("PUBLISHERS", "SUBSCRIPTIONS", "SERVICES", "CLIENTS", "HISTORY"))
 THREAD = "priority: 4, stack: 9000 B"
 #: Port -> operating system, and the loop of its first thread.
@@ -60,6 +66,8 @@ PORTS = {
     "pico-sdk": ("", "{spin_some: 10 ms, sleep: 0.25 ms}"),
     "nuttx": ("os: {rtos: nuttx}", "{spin: 50 ms}"),
 }
+#: What the code calls, with its parameters.
+STUBS = Path(__file__).parent / "rclc_stubs.h"
 WITH_THREADS = ("espidf", "zephyr", "cubemx", "renesas", "freertos")
 
 
@@ -125,6 +133,7 @@ def facts(description, has_threads=True):
         "services": {(s.name, s.request_size, s.response_size) for node in nodes for s in node.services},
         "clients": {(c.name, c.service, c.request_size, c.response_size) for node in nodes for c in node.clients},
         "guards": {guard.name for node in nodes for guard in node.guard_conditions},
+        "actions": {(a.name, a.goal_size, a.result_size, a.feedback_size) for node in nodes for a in node.action_servers},
         "servers": [node.parameter_server is not None for node in nodes],
         "loops": [(each.name, loop_of(each.loop)) for each in executors],
         "threads": [(each.priority, each.stack) for each in executors] if has_threads else [],
@@ -165,36 +174,20 @@ def test_the_loop_that_connects_again_has_a_ping_more(tmp_path):
     assert "IMP026" not in {each.rule for each in import_code([tmp_path / "code"]).findings}
 
 
-STUBS = """
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-typedef int rcl_ret_t; typedef int rcl_allocator_t; typedef struct {{ int context; }} rclc_support_t; typedef int rmw_context_t;
-typedef struct {{ size_t max_string_capacity, max_ros2_type_sequence_capacity, max_basic_type_sequence_capacity; }}
-  micro_ros_utilities_memory_conf_t;
-typedef int rcl_node_t, rcl_publisher_t, rcl_subscription_t, rcl_timer_t, rcl_service_t, rcl_client_t, rcl_guard_condition_t,
-  rclc_executor_t, rclc_parameter_server_t;
-enum {{ ON_NEW_DATA, ALWAYS, RCL_RET_OK, RCL_RET_BAD_ALLOC, RMW_RET_OK, LET }};
-int functions();
-#define ROSIDL_GET_MSG_TYPE_SUPPORT(a, b, c) functions()
-#define ROSIDL_GET_SRV_TYPE_SUPPORT(a, b, c) functions()
-#define K_THREAD_DEFINE(name, size, entry, a, b, c, priority, d, e) void (* name)(void *, void *, void *) = entry
-#define RCL_MS_TO_NS(ms) ((ms) * 1000000LL)
-"""
-
-
-@pytest.mark.parametrize(("port", "options"), [*((port, {}) for port in PORTS), ("nuttx", {"stamps": True})])
+@pytest.mark.parametrize(
+    ("port", "options"),
+    [
+        *((port, {}) for port in PORTS),
+        ("nuttx", {"stamps": True}),
+        *((port, {"reconnect": True}) for port in ("arduino", "pico-sdk")),
+    ],
+)
 def test_the_code_compiles(port, options, tmp_path):
     generate(described(port, tmp_path), tmp_path / "code", code=True, **options)
     (source,) = (tmp_path / "code").glob("amuros_app.*")
     text = source.read_text()
-    types = set(re.findall(r"\b\w+__(?:msg|srv)__\w+", text))
-    called = set(
-        re.findall(r"\b((?:rclc?|rmw|micro_ros|xTask|vTask|k_|sleep_|usleep|busy_|HAL_|delay|esp_|pdMS|K_USEC)\w*)\(", text)
-    )
-    called -= {"rcl_ret_t"}
-    stubs = STUBS.format() + "".join(f"typedef int {each};\n" for each in types)
-    stubs += "".join(f"#define {each}(...) functions(__VA_ARGS__)\n" for each in called)
+    types = set(re.findall(r"\b\w+__(?:msg|srv|action)__\w+", text))
+    stubs = STUBS.read_text() + "".join(f"typedef struct {{ int content; }} {each};\n" for each in sorted(types))
     includes = "".join(f"{tmp_path}/include/{each}\n" for each in re.findall(r"#include <(.+)>", text))
     for each in includes.split():
         (path := tmp_path / each).parent.mkdir(parents=True, exist_ok=True)
@@ -203,12 +196,25 @@ def test_the_code_compiles(port, options, tmp_path):
         (tmp_path / "include" / name).unlink(missing_ok=True)
     (tmp_path / "include" / "rmw_microxrcedds_c").mkdir()
     config = "".join(
-        f"#define {name} 99\n" for name in re.findall(r"\b(?:RMW|UXR)_\w+", (tmp_path / "code" / "amuros_limits.h").read_text())
+        f"#define {name} 999\n"
+        for name in re.findall(r"\b(?:RMW|UXR)_\w+", (tmp_path / "code" / "amuros_limits.h").read_text())
     )
     (tmp_path / "include" / "rmw_microxrcedds_c" / "config.h").write_text(config)
     (tmp_path / "stubs.h").write_text(stubs)
-    language = ["-x", "c", "-std=gnu11", "-include", tmp_path / "stubs.h"]
-    command = ["gcc", *language, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", tmp_path / "include", source]
+    language = ["-x", "c", "-std=gnu11"] if source.suffix == ".c" else ["-x", "c++", "-std=gnu++17"]
+    command = [
+        "gcc",
+        *language,
+        "-include",
+        tmp_path / "stubs.h",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-fsyntax-only",
+        "-I",
+        tmp_path / "include",
+        source,
+    ]
     run = subprocess.run(command, capture_output=True, check=False, text=True)
     assert run.stderr == ""
 
@@ -250,6 +256,11 @@ def test_the_stamps_of_the_code_are_measured(tmp_path):
         ("bounds: {string: 30}", "message_size: 64 B", "std_msgs/msg/String has no longest string or sequence"),
         ("sleep: 3 ms", "sleep: 0.5 ms", "no function of the port is known to sleep for 500 us"),
         ("priority: 4", "", "'stack' and 'priority' of 'first' are not stated"),
+        (
+            "guard_conditions:",
+            f"{ACTION_CLIENT}\n      guard_conditions:",
+            "no code is written for clients of actions of 'robot'",
+        ),
         ("loop: {spin_some: 1 ms, sleep: 3 ms}", "period: 10 ms\n      callbacks: in-executor", "'first' has no 'loop'"),
         ("max_handles: 20", "trigger: {custom: [[control]]}", "the trigger of 'first' is a function of the application"),
     ],

@@ -22,6 +22,7 @@ VALUES = {
     "loop": "{spin_some: 10 ms}",
     "core": "Core_0",
     "priority": "3",
+    "stack": "16 kB",
     "trigger": "any",
     "order": "[]",
     "publishes": "[]",

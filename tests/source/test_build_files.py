@@ -15,6 +15,10 @@ SETUP = NODE + TIMER + EXECUTOR.format(1) + "check(rclc_executor_add_timer(&e, &
 SPIN = "rclc_executor_spin_some(&e, RCL_MS_TO_NS(10)); "
 ARDUINO = f"void setup() {{ set_microros_serial_transports(Serial); {SETUP} }} void loop() {{ {SPIN} delay(5); }}"
 PICO = f"void main(void) {{ rmw_uros_set_custom_transport(true, NULL, pico_serial_open); {SETUP} while (1) {{ {SPIN} }} }}"
+TASK = (
+    f'#include "freertos/FreeRTOS.h"\nvoid task(void * a) {{{{ {SETUP} while (1) {{{{ {SPIN} usleep(10000); }}}} }}}}\n'
+    'void app_main(void) {{ xTaskCreate(task, "task", {}, NULL, CONFIG_PRIORITY, NULL); }}'
+)
 ZEPHYR = (
     f"void main(void) {{ rmw_uros_set_custom_transport(MICRO_ROS_FRAMING, 0, zephyr_open); {SETUP} while (1) {{ {SPIN} }} }}"
 )
@@ -54,6 +58,25 @@ INI = "[env:robot]\nboard = {}\nframework = arduino\nlib_deps = https://github.c
             },
             ["ros: humble # platformio.ini:5", "udp: {bitrate: TODO}", "frequency: 80000000 Hz"],
         ),
+        # A value of another section.
+        (
+            ARDUINO,
+            {
+                "platformio__ini": "[common]\ndistro = humble\n"
+                + INI.format("due")
+                + "board_microros_distro = ${common.distro}\n"
+            },
+            ["ros: humble # platformio.ini:7"],
+        ),
+        # Settings of Kconfig are macros of the code; a stack that is not constant is a gap.
+        (
+            TASK.format("CONFIG_STACK"),
+            {"sdkconfig": "CONFIG_STACK=16000\nCONFIG_PRIORITY=5\n# CONFIG_OTHER is not set\n"},
+            ["stack: 16000 B", "priority: 5"],
+        ),
+        (TASK.format("size()"), {"sdkconfig": ""}, ["stack: TODO", "priority: TODO"]),
+        # A stack of the application: 3000 words of 4 B.
+        (f"uint32_t words[3000]; {TASK.format('sizeof(words)')}", {"sdkconfig": ""}, ["stack: 12000 B"]),
         # Two environments with different boards state none.
         (
             ARDUINO,

@@ -48,3 +48,26 @@ def test_each_object_has_its_own_entities(objects, begin, send, topics, publishe
 def test_what_a_constructor_creates_for_each_object_is_a_finding(tmp_path):
     text = CLASS.replace("void begin(const char * topic)", "Wheel(const char * topic)") + 'Wheel left("l"), right("r");'
     assert "IMP003" in rules(imported(tmp_path, text + MAIN.format(begin="", send="left.send();"), "main.ino"))
+
+
+@pytest.mark.parametrize(
+    ("members", "period"),
+    [
+        ("static constexpr int period = 20;", "period: 20 ms"),
+        ("int period = 20;", "period: 20 ms"),
+        ("int period; Robot() : period(20) {}", "period: 20 ms"),
+        ("int period; Robot() { period = 20; }", "period: 20 ms"),
+        # The constructor counts, not the default.
+        ("int period = 10; Robot(int given) : period(given) {}", "period: 20 ms"),
+        # Another function may change it before.
+        ("int period = 20; void set(int value) { period = value; }", "period: TODO"),
+        ("int period; Robot(int given) : period(given) {} Robot() : period(5) {}", "period: TODO"),
+    ],
+)
+def test_a_member_has_what_it_is_initialised_with(members, period, tmp_path):
+    timer = "check(rclc_timer_init_default(&timer, &support, RCL_MS_TO_NS({}), on_timer));"
+    robot = f"class Robot {{ public: {members} void begin() {{ {timer.format('period')} }} }};"
+    given = "Robot robot(20);" if "given" in members else "Robot robot;"
+    program = MAIN.replace(timer.format(50), "robot.begin();")
+    result = imported(tmp_path, robot + given + program.format(begin="", send=""), "main.ino")
+    assert period in result.text

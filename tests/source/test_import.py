@@ -21,7 +21,7 @@ FLAWS = {
     "let_and_trigger.c": {"IMP014", "IMP021", "IMP022"},
     "multi_io.c": {"IMP006", "IMP011", "IMP012", "IMP013"},
     "ping_pong.c": {"IMP012", "IMP021"},
-    "reconnection.ino": {"IMP013", "IMP018"},
+    "reconnection.ino": {"IMP018"},
     "two_executors.cpp": {"IMP023"},
     "zephyr_main.c": {"IMP009"},
 }

@@ -80,7 +80,11 @@ def test_a_program_that_was_read_by_hand(name, tmp_path):
         timer: period and (f"{period} ms" if period < 1000 else f"{period // 1000} s")
         for timer, period in expected.get("timers", {}).items()
     }
+    stated = [each["reliability"] for kind in ("publishers", "subscriptions") for each in node.get(kind, ())]
+    assert stated == expected.get("reliabilities", stated)
     assert ("parameter_server" in node) == expected.get("parameters", False)
+    assert data["middleware"].get("multithread", False) == expected.get("multithread", False)
+    assert data["middleware"]["transport"] == expected.get("transport", data["middleware"]["transport"])
     loops = [in_any_turn(items_of(each)) for each in expected["loops"]]
     assert [in_any_turn(each) for each in loops_of(data)] == loops
     executors = data["middleware"].get("executors") or [data["middleware"]["executor"]]
@@ -92,5 +96,5 @@ def test_a_program_that_was_read_by_hand(name, tmp_path):
 
 
 def test_there_are_programs_of_all_kinds():
-    assert len(PROGRAMS) + len(EXPECTED) >= 75
+    assert len(PROGRAMS) + len(EXPECTED) >= 90
     assert {path.name for path in FOLDER.iterdir()} == {*EXPECTED, "expected.yaml"}

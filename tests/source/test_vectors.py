@@ -19,7 +19,7 @@ EXPECTED = {
     "hal-delay.c": (["priority: 5", "- spin_some: 1 ms", "- busy_wait: 10 ms"], {"IMP008"}),
     # Nobody says how long a tick is: 10 ms is the default, with which it does not sleep.
     "delay-below-tick.c": (["loop: {spin_some: 1 ms, sleep: TODO}", "tick: 10 ms"], {"IMP020"}),
-    "reconnection.ino": (["loop: {spin_some: 100 ms}", "name: on_a", "name: on_b"], {"IMP007", "IMP013", "IMP018"}),
+    "reconnection.ino": (["loop: {spin_some: 100 ms}", "name: on_a", "name: on_b"], {"IMP007", "IMP018"}),
     "zephyr-usleep.c": (["loop: {spin_some: 10 ms, sleep: 1 ms}", "rtos: zephyr"], {"IMP020"}),
     "publisher-of-other-node.c": (["name: motor", "name: ticks", "publishes: [ticks]"], {"IMP018"}),
     "unallocated-string.ino": (["name: on_s", "name: on_j"], {"IMP007", "IMP021"}),

@@ -148,7 +148,7 @@ def _spins_elsewhere(section: ExecutorSection, others: Sequence[ExecutorSection]
 
 def _problems(nodes: Sequence[NodeSection]) -> Iterator[Finding]:
     for node in nodes:
-        for kind, sections in (("actions", [*node.action_servers, *node.action_clients]), ("a lifecycle", [node.lifecycle])):
+        for kind, sections in (("clients of actions", node.action_clients), ("a lifecycle", [node.lifecycle])):
             for section in filter(None, sections):
                 yield without_code(f"no code is written for {kind} of {node.name!r}", section.location())
     for section, kind in open_types(nodes):
@@ -158,7 +158,7 @@ def _problems(nodes: Sequence[NodeSection]) -> Iterator[Finding]:
 
 def header_of(message: CodeMessage) -> str:
     """The header of a type: ros2/rosidl rosidl_cmake, string_camel_case_to_lower_case_underscore."""
-    name = re.sub(r"_(Request|Response)$", "", message.type.name)
+    name = re.sub(r"(_SendGoal)?_(Request|Response)$", "", message.type.name)
     snake = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     snake = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", snake).lower()
     return f"{message.type.package}/{message.type.kind}/{snake}.h"

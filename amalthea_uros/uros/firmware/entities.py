@@ -10,6 +10,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import (
+    ActionServer,
     CallbackSection,
     Client,
     GuardCondition,
@@ -24,6 +25,8 @@ from amalthea_uros.spec.message_types import TypedMessage
 #: The package of the types that stand for those that a description does not state.
 STAND_INS = "amuros_types"
 _MEMORY = ("string", "sequence")
+#: What the goal, the result and the feedback of an action have besides their fields, in bytes: its identifier or its state.
+_AROUND_ACTIONS = (16, 1, 16)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +72,7 @@ class CodeHandler(Brief):
 
     Attributes
     ----------
-    kind : `timer`, `subscription`, `service`, `client`, `guard_condition` or `parameter_server`
+    kind : `timer`, `subscription`, `service`, `client`, `guard_condition`, `action_server` or `parameter_server`
     callback : the function that the executor calls
     hook : the function of the application that it calls
     messages : what it gets, and what it fills in before it returns
@@ -88,10 +91,10 @@ class CodeHandler(Brief):
     requests: tuple[CodeHandler, ...] = ()
 
     @property
-    def service(self) -> MessageType:
-        """The type of a service."""
-        whole = self.messages[0].type
-        return MessageType(whole.package, whole.kind, whole.name.removesuffix("_Request"))
+    def whole_type(self) -> MessageType:
+        """The type of a service or action."""
+        part = self.messages[0].type
+        return MessageType(part.package, part.kind, re.sub(r"(_SendGoal)?_Request$", "", part.name))
 
 
 class Identifiers:
@@ -164,9 +167,10 @@ class CodeEntities:
         stated, bounds = section.type, section.bounds
         own = MessageType(*stated.split("/")) if stated is not None else self._stand_in(section, name, kind)
         created = []
-        for part in keys.values():
+        # The goal is what an action server keeps a variable for; it sends the rest by functions of its own.
+        for part in keys.values() if kind != "action" else ("SendGoal_Request",):
             whole = own.part(part) if part else own
-            length = length_of(whole) if stated is not None else None
+            length = length_of(own.part("Goal") if kind == "action" else whole) if stated is not None else None
             given = {each: getattr(bounds, each) or 0 for each in _MEMORY} if bounds is not None else dict.fromkeys(_MEMORY, 0)
             created.append(
                 CodeMessage(
@@ -186,6 +190,8 @@ class CodeEntities:
         title = title if title[:1].isalpha() else f"T{title}"
         # Of both ends of a topic, the longer message.
         sizes = [-(-getattr(section, key) // 8) for key in type(section).sizes]
+        if kind == "action":
+            sizes = [max(0, size - around) for size, around in zip(sizes, _AROUND_ACTIONS, strict=True)]
         known = self._sizes.setdefault((kind, title), sizes)
         sizes[:] = map(max, known, sizes)
         self._sizes[kind, title] = sizes
@@ -196,7 +202,7 @@ class CodeEntities:
     def _handler(self, node: NodeSection, section: CallbackSection) -> CodeHandler:
         kind = _KINDS[type(section)]
         messages: tuple[CodeMessage, ...] = ()
-        if isinstance(section, Subscription | ServiceSection | Client):
+        if isinstance(section, Subscription | ServiceSection | Client | ActionServer):
             subject = (
                 section.topic
                 if isinstance(section, Subscription)
@@ -204,7 +210,8 @@ class CodeEntities:
                 if isinstance(section, Client)
                 else section.name
             )
-            messages = self._messages(section, subject, "msg" if isinstance(section, Subscription) else "srv")
+            form = "msg" if isinstance(section, Subscription) else "action" if isinstance(section, ActionServer) else "srv"
+            messages = self._messages(section, subject, form)
         return CodeHandler(
             kind=kind,
             name=section.name,
@@ -240,6 +247,7 @@ _KINDS: dict[type[CallbackSection], str] = {
     ServiceSection: "service",
     Client: "client",
     GuardCondition: "guard_condition",
+    ActionServer: "action_server",
 }
 
 
@@ -250,6 +258,7 @@ def _callbacks(node: NodeSection) -> Iterator[CallbackSection]:
         node.services,
         node.clients,
         node.guard_conditions,
+        node.action_servers,
     )
     for group in groups:
         yield from group
@@ -258,7 +267,10 @@ def _callbacks(node: NodeSection) -> Iterator[CallbackSection]:
 def open_types(nodes: Sequence[NodeSection]) -> Iterator[tuple[TypedMessage, str]]:
     """Messages whose strings and sequences have no bound in the description, so that nothing can give them memory."""
     for node in nodes:
-        typed: tuple[Sequence[TypedMessage], ...] = (node.subscriptions, node.publishers, node.services, node.clients)
+        typed: tuple[Sequence[TypedMessage], ...] = (
+            *(node.subscriptions, node.publishers, node.services, node.clients),
+            node.action_servers,
+        )
         for section in (each for group in typed for each in group):
             stated, bounds = section.type, section.bounds
             if stated is None:

@@ -9,8 +9,9 @@ from amalthea_uros.uros.firmware.entities import CodeHandler, CodeMessage
 
 
 def parameters(handler: CodeHandler) -> str:
-    """The parameters of a function: its message, and the messages that it fills in."""
-    listed = [f"{kind} * {message.variable}" for kind, message in _inputs(handler)]
+    """The parameters of a function: its message or goal, and the messages that it fills in."""
+    listed = ["rclc_action_goal_handle_t * goal"] if handler.kind == "action_server" else []
+    listed += [f"{kind} * {message.variable}" for kind, message in _inputs(handler)]
     listed += [f"{message.c_type} * {message.variable}" for message in _outputs(handler)]
     return ", ".join(listed) or "void"
 
@@ -18,7 +19,8 @@ def parameters(handler: CodeHandler) -> str:
 def arguments(handler: CodeHandler) -> str:
     """The arguments in its callback."""
     received = ["request", "response"] if handler.kind == "service" else ["response" if handler.kind == "client" else "message"]
-    given = [f"({kind} *) {name}" for (kind, _), name in zip(_inputs(handler), received, strict=False)]
+    given = ["goal"] if handler.kind == "action_server" else []
+    given += [f"({kind} *) {name}" for (kind, _), name in zip(_inputs(handler), received, strict=False)]
     return ", ".join([*given, *(f"&{message.variable}" for message in _outputs(handler))])
 
 
