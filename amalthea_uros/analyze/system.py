@@ -11,17 +11,16 @@ from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
+from amalthea_uros.analyze.hosts_and_messages import executors_and_messages, solved
 from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
 from amalthea_uros.analyze.process_results import process_results
-from amalthea_uros.analyze.response_times.propagation import solve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.executors.results import ExecutorResult
-from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import (
@@ -54,10 +53,10 @@ def analyze_while(system: System, settings: Settings | None, is_wanted: Callable
         )
     settings = settings or Settings()
     system = with_stated_phases(system, settings.phases)
-    solution = _solved(system, settings)
+    solution = solved(system, settings)
     system = solution.context.system
     unknown = unknown_phases(system)
-    executors, crossing, host = _executors_and_messages(solution)
+    executors, crossing, host = executors_and_messages(solution)
     every, is_complete = _of_all_phases(solution, unknown, executors, crossing, is_wanted)
     if not is_complete:
         return None
@@ -71,31 +70,6 @@ def analyze_while(system: System, settings: Settings | None, is_wanted: Callable
         assumptions=tuple(dict.fromkeys((*found.assumptions, *(notes.assumptions if is_used else ()), *phases))),
         findings=tuple(dict.fromkeys((*found.findings, *(notes.found if is_used else ())))),
     )
-
-
-def _solved(system: System, settings: Settings) -> Solution:
-    """The response times for unknown phases, with the messages of the host as it sends them."""
-    solution = solve(timing_context(system, settings))
-    if not solution.context.system.host.executors:
-        return solution
-    # Most systems have no host, and all that is known of hosts takes long to import.
-    from amalthea_uros.analyze.host.handover import with_messages_of_host
-
-    return with_messages_of_host(system, solution)
-
-
-def _executors_and_messages(
-    solution: Solution,
-) -> tuple[Results[ExecutorResult], Results[ChainResult], Results[ExecutorResult]]:
-    """The results of executors in loops, of the chains that cross them or wires, and of executors of the host; most have none."""
-    if not solution.context.system.has_messages_or_loops:
-        return Results(), Results(), Results()
-    from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
-    from amalthea_uros.executors.bounds.findings import note_executors
-
-    found = evaluate_executors_and_messages(solution)
-    note_executors(found[0], solution)
-    return found
 
 
 def _of_all_phases(

@@ -32,7 +32,6 @@ HEAVY = {
         "amalthea_uros.analyze.host.releases",
         "amalthea_uros.analyze.chains.message_chains",
         "amalthea_uros.executors.bounds.evaluate",
-        "amalthea_uros.services.what_if",
         "amalthea_uros.simulate.kernel",
     ),
 }

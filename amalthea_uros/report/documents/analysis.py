@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from math import ceil
-from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.impact import Effect, Impact
 from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
@@ -52,11 +51,9 @@ from amalthea_uros.report.wording.chains import MESSAGE_COLUMNS as MESSAGE_COLUM
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.report.wording.impact import impact_cells, unchanged_text
 from amalthea_uros.services.analyze import AnalysisResult, analysis_result
+from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, frequency_text, time_text
-
-if TYPE_CHECKING:
-    from amalthea_uros.services.what_if import WhatIf
 
 BAR = 20
 _HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
