@@ -1,4 +1,4 @@
-"""Hosts, messages and executors in loops: most systems have none, and what is known of them takes long to import."""
+"""Hosts, messages and executors in loops: most systems have none, and their analyses take long to import."""
 
 from __future__ import annotations
 
@@ -31,6 +31,6 @@ def executors_and_messages(
     from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
     from amalthea_uros.executors.bounds.findings import note_executors
 
-    found = evaluate_executors_and_messages(solution)
-    note_executors(found[0], solution)
-    return found
+    results = evaluate_executors_and_messages(solution)
+    note_executors(results[0], solution)
+    return results
