@@ -9,10 +9,9 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.callbacks import CallbackEvaluator
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
 from amalthea_uros.analyze.chains.job_chains import JobBudget
-from amalthea_uros.analyze.chains.message_chains import evaluate_executors_and_messages
 from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
-from amalthea_uros.analyze.host.handover import solve_with_host
+from amalthea_uros.analyze.hosts_and_messages import executors_and_messages, solved
 from amalthea_uros.analyze.loads import note_ignored, processor_results
 from amalthea_uros.analyze.phases.cases import PhaseCases
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
@@ -20,7 +19,7 @@ from amalthea_uros.analyze.process_results import process_results
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.executors.bounds.findings import note_executors
+from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.system import System
@@ -54,11 +53,10 @@ def analyze_while(system: System, settings: Settings | None, is_wanted: Callable
         )
     settings = settings or Settings()
     system = with_stated_phases(system, settings.phases)
-    solution = solve_with_host(system, settings)
+    solution = solved(system, settings)
     system = solution.context.system
     unknown = unknown_phases(system)
-    executors, crossing, host = evaluate_executors_and_messages(solution)
-    note_executors(executors, solution)
+    executors, crossing, host = executors_and_messages(solution)
     every, is_complete = _of_all_phases(solution, unknown, executors, crossing, is_wanted)
     if not is_complete:
         return None
@@ -86,15 +84,22 @@ def _of_all_phases(
     if cases is None:
         return None, True
     analyses: dict[int, Analysis] = {}
+    # Loads are those of whole cycles, whatever the phases.
+    loads: Results[ProcessorResult] | None = None
     for number, each in cases.solutions(cases.of_everything()):
-        analyses[number] = _analysis(each, budget, executors, crossing)
+        analyses[number] = _analysis(each, budget, executors, crossing, loads)
+        loads = analyses[number].processors
         if not is_wanted(analyses[number]):
             return None, False
     return merged(analyses, cases, solution), True
 
 
 def _analysis(
-    solution: Solution, budget: JobBudget, executors: Results[ExecutorResult], crossing: Results[ChainResult]
+    solution: Solution,
+    budget: JobBudget,
+    executors: Results[ExecutorResult],
+    crossing: Results[ChainResult],
+    loads: Results[ProcessorResult] | None = None,
 ) -> Analysis:
     """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job.
 
@@ -102,6 +107,7 @@ def _analysis(
     ----------
     executors : those that spin in loops, for all phases
     crossing : the chains that cross wires, the agent or executors in loops, for all phases
+    loads : of the cores; None if they are not known yet
     """
     context = solution.context
     system = context.system
@@ -113,7 +119,7 @@ def _analysis(
     chains = Results(known.get(chain.name) or over_all_phases(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
-    processors = Results(processor_results(solution))
+    processors = loads or Results(processor_results(solution))
     return Analysis(
         solution=solution,
         processors=processors,

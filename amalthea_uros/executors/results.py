@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from fractions import Fraction
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Span
+from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time, time_text
 
@@ -145,3 +147,21 @@ class ExecutorResult(Shown):
 
     def __repr__(self) -> str:
         return f"<ExecutorResult {self.name}: {len(self.handles)} handles>"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExecutorOccurrences:
+    """When executors send, and how late their iterations are.
+
+    Attributes
+    ----------
+    sent : by the names of transmissions; None if that has no bound
+    lateness : of the end of an iteration after what began it, by the names of tasks; None if that has no bound
+    again : what is sent again besides, by the names of transmissions; None if that has no bound
+    overrunning : the tasks of loops of which a wait and an iteration can take longer than the period, or for an unknown time
+    """
+
+    sent: Mapping[str, EventModel | None] = field(default_factory=dict)
+    lateness: Mapping[str, Time | None] = field(default_factory=dict)
+    again: Mapping[str, EventModel | None] = field(default_factory=dict)
+    overrunning: frozenset[str] = frozenset()

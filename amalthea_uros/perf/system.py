@@ -62,6 +62,11 @@ class System:
             items[kind] = tuple(replace(each, activities=transformed(each.activities, change)) for each in found)
         return replace(self, software=replace(software, **items))
 
+    @property
+    def has_messages_or_loops(self) -> bool:
+        """Whether something is sent, or an executor spins in a loop, so that not all is said by tasks and their activations."""
+        return bool(self.executors or self.transmissions or self.host.executors)
+
     @cached_property
     def clocks(self) -> Mapping[str, Clock]:
         """The clocks of the hardware."""

@@ -120,7 +120,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
     added = add_processes(context, options, database)
     system = assembled_system(context, added.callbacks, added.network)
     memory = memory_of(context.description, hardware, system, context.profile)
-    check_memory(context, added.callbacks, memory, hardware)
+    check_memory(context, options, added.callbacks, memory, hardware)
     first = next((choice for choice in added.choices if choice.task == choice.executor), None)
     return Assembly(
         description=context.description,

@@ -19,19 +19,24 @@ from amalthea_uros.uros.storage import MessageStorage, storage_of
 
 
 def check_memory(
-    context: AssemblyContext, callbacks: Iterable[Callback], memory: MemoryDemand, hardware: HardwareSection
+    context: AssemblyContext,
+    options: Iterable[Option],
+    callbacks: Iterable[Callback],
+    memory: MemoryDemand,
+    hardware: HardwareSection,
 ) -> None:
     """Report memory that is exceeded, and too little of it for received messages.
 
     Parameters
     ----------
+    options : of the middleware
     memory : with the options of the description
     hardware : of the description, completed by its platform
     """
-    application, findings = context.description.application, context.notes
-    storage = storage_of(context.profile, application, memory)
+    findings = context.notes
+    storage = storage_of(context.profile, context.description.application, memory)
     if storage is not None:
-        _check_storage(callbacks, context.profile.options(application), storage, findings)
+        _check_storage(callbacks, options, storage, findings)
     _check_stacks(context.description.middleware, findings)
     if (exceeded := exceeded_memory(memory, storage, hardware)) is not None:
         findings.add_all([exceeded])

@@ -6,9 +6,10 @@ in `memory`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.lazy_mapping import LazyMapping
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application
@@ -31,7 +32,7 @@ class MessageStorage(Brief):
     limit : bytes of memory, with the name of what has it; None if it is not specified
     room : slots that fit beside all else that is known; None without a limit
     unknown : processes whose stacks are not stated, so that fewer slots can fit
-    smaller : MTUs that are enough for the application, in descending order, and the slots that fit with each
+    smaller : the slots that fit with MTUs that are enough for the application, in descending order, found once somebody looks at them
     mtu_option : the build option with the MTU
     looping : the executors that spin in loops
     """
@@ -44,7 +45,7 @@ class MessageStorage(Brief):
     limit: tuple[int, str] | None
     room: int | None
     unknown: tuple[str, ...]
-    smaller: tuple[tuple[int, int], ...] = ()
+    smaller: Mapping[int, int] = field(default_factory=dict)
     mtu_option: str = ""
     looping: frozenset[str] = frozenset()
 
@@ -61,7 +62,8 @@ class MessageStorage(Brief):
         few = f"No value of {self.option} is enough: at least {least} slots of {self.slot} B are needed, but {self._fits()}."
         if not self.smaller:
             return f"{few} T{_WAITING[1:]}."
-        size, room = next((each for each in self.smaller if each[1] >= least), self.smaller[-1])
+        every = tuple(self.smaller.items())
+        size, room = next((each for each in every if each[1] >= least), every[-1])
         return f"{few} Set {self.mtu_option} to {size}, with which {_fit(room)}, or {_WAITING}."
 
     @property
@@ -112,7 +114,7 @@ def storage_of(profile: Profile, application: Application, memory: MemoryDemand)
         limit=memory.limit,
         room=_room(profile, memory),
         unknown=memory.stacks.unknown,
-        smaller=() if mtu is None else tuple(_with_smaller(mtu, profile, application, memory)),
+        smaller={} if mtu is None else LazyMapping(lambda: dict(_with_smaller(mtu, profile, application, memory))),
         mtu_option="" if mtu is None else mtu.name,
         looping=frozenset(each.name for each in profile.middleware.stated_executors if each.loop is not None),
     )

@@ -10,6 +10,7 @@ from hand_made_systems import READ, WRITE, Proc, access, chain, system, ticks
 from support import ROOT, SHARED, analysis_of
 
 from amalthea_uros import Settings, analyze_system, describe
+from amalthea_uros.analyze import system as whole
 from amalthea_uros.analyze.explanations.processes import shares
 from amalthea_uros.analyze.phases import cases as phases
 from amalthea_uros.analyze.priorities.assignment import propose_priorities
@@ -129,6 +130,17 @@ class TestTooManyPhases:
         assert latency(analysis) >= 20029
         (chain,) = analysis.chains
         assert "over all 20 phases" in chain.values[0].method
+
+
+def test_loads_are_computed_once_for_all_phases(monkeypatch):
+    computed, one = [], whole.processor_results
+    monkeypatch.setattr(whole, "processor_results", lambda solution: computed.append(solution) or one(solution))
+    analysis = analyze(sample())
+    # Those of the phase that was solved first are those of the schedule for unknown phases, too.
+    assert len(computed) == 1
+    assert [(each.best, each.worst) for each in analysis.processors] == [
+        (each.best, each.worst) for each in one(analysis.solution)
+    ]
 
 
 def test_too_many_jobs_are_too_many_phases(monkeypatch):

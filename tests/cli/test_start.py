@@ -29,6 +29,9 @@ HEAVY = {
         "amalthea_uros.perf",
         "amalthea_uros.timing",
         "amalthea_uros.analyze",
+        "amalthea_uros.analyze.host.releases",
+        "amalthea_uros.analyze.chains.message_chains",
+        "amalthea_uros.executors.bounds.evaluate",
         "amalthea_uros.simulate.kernel",
     ),
 }

@@ -22,7 +22,6 @@ from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, aggregated
 from amalthea_uros.units import Time, time_text
 
@@ -30,12 +29,14 @@ from amalthea_uros.units import Time, time_text
 _MAX_PASSES = 30
 
 
-def solve_with_host(system: System, settings: Settings) -> Solution:
-    """The solution in which messages of the host come as the host sends them; what was stated otherwise becomes a finding."""
-    described, solution = system, solve(timing_context(system, settings))
-    stated = solution.context.system
-    if not stated.host.executors:
-        return solution
+def with_messages_of_host(described: System, solution: Solution) -> Solution:
+    """The solution in which messages of the host come as the host sends them; what was stated otherwise becomes a finding.
+
+    Parameters
+    ----------
+    solution : with the messages as stated
+    """
+    stated, settings = solution.context.system, solution.context.settings
     for _ in range(_MAX_PASSES):
         releases = HostReleases(HostTopics(stated.host, solution)).solve()
         system = solution.context.system

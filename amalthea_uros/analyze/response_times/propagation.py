@@ -18,7 +18,7 @@ from amalthea_uros.analyze.response_times.several_cores import responses_on_seve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.waits import bound_waits, reasons_besides_waits, warn_of_unknown_waits
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.bounds.occurrences import ExecutorOccurrences, least_occurrences, occurrences
+from amalthea_uros.executors.results import ExecutorOccurrences
 from amalthea_uros.executors.semantics.loops import sleep_of, why_deferred, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.executors import Executor
@@ -94,6 +94,8 @@ def _executor_occurrences(solution: Solution, responses: Mapping[str, Response] 
     """When executors send, and how late they are, as it follows from the previous step; the least for the first one."""
     if not solution.context.system.executors:
         return ExecutorOccurrences()
+    from amalthea_uros.executors.bounds.occurrences import least_occurrences, occurrences
+
     if responses is None:
         return least_occurrences(solution.context)
     # What is derived from a solution is kept in it, so that each step needs its own.

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import Arriving, acknowledged, times_out
 from amalthea_uros.executors.bounds.cycle import Cycle
@@ -30,7 +29,7 @@ from amalthea_uros.executors.bounds.sending_places import sending_places
 from amalthea_uros.executors.bounds.sent_again import sent_again
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
-from amalthea_uros.executors.results import HandleResult
+from amalthea_uros.executors.results import ExecutorOccurrences, HandleResult
 from amalthea_uros.executors.semantics.losses import recovers
 from amalthea_uros.executors.semantics.message_parts import parts
 from amalthea_uros.executors.semantics.readiness import arrivals, reads_in_waits
@@ -47,24 +46,6 @@ from amalthea_uros.timing.event_models.models import (
     SporadicEvents,
 )
 from amalthea_uros.units import Time
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExecutorOccurrences:
-    """When executors send, and how late their iterations are.
-
-    Attributes
-    ----------
-    sent : by the names of transmissions; None if that has no bound
-    lateness : of the end of an iteration after what began it, by the names of tasks; None if that has no bound
-    again : what is sent again besides, by the names of transmissions; None if that has no bound
-    overrunning : the tasks of loops of which a wait and an iteration can take longer than the period, or for an unknown time
-    """
-
-    sent: Mapping[str, EventModel | None] = field(default_factory=dict)
-    lateness: Mapping[str, Time | None] = field(default_factory=dict)
-    again: Mapping[str, EventModel | None] = field(default_factory=dict)
-    overrunning: frozenset[str] = frozenset()
 
 
 def least_occurrences(context: TimingContext) -> ExecutorOccurrences:

@@ -168,7 +168,7 @@ def route_text(route: Route) -> str:
 def crosses(chain: EventChain, dataflow: Dataflow) -> bool:
     """Whether a chain passes a wire or an executor that loops, so that its latency is a sum of message hops."""
     system = dataflow.system
-    if not system.executors and not system.transmissions and not system.host.executors:
+    if not system.has_messages_or_loops:
         return False
     try:
         unfolded = unfold(chain, system)[0]
