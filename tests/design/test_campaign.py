@@ -59,7 +59,7 @@ def test_more_values_than_can_be_kept_are_refused_after_the_first_run(monkeypatc
     assert len(finished_runs(job, runs(10), serial)) == 10
     executed.clear()
     with pytest.raises(
-        InvalidArgumentError, match="11 runs with 10 values each .* at most 100 values are kept, those of 10 runs"
+        InvalidArgumentError, match=r"11 runs with 10 values each .* at most 100 values are kept, those of 10 runs"
     ):
         finished_runs(job, runs(11), serial)
     assert executed == [1]

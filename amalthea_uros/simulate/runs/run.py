@@ -43,6 +43,6 @@ def simulate_system(
     with ExitStack() as stack:
         run.execute([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
     result = RunEvaluation(run).result()
-    # The run and its driver refer to each other, so that the memory of each run would be kept until garbage is collected, which is rare.
+    # Run and driver refer to each other: the memory of each run would be kept until garbage is collected, which is rare.
     run.driver.memory = []
     return result
