@@ -25,6 +25,8 @@ from templating import ROOT
 
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "trace")]
 
+from fuzzing.seeds import seeds
+
 import amalthea_uros
 from amalthea_uros.errors import AmurosError, InvalidArgumentError
 from amalthea_uros.findings.accepted import read_baseline
@@ -34,7 +36,6 @@ from amalthea_uros.services.generate import check_colcon_meta
 from amalthea_uros.services.import_code import import_code
 from amalthea_uros.services.import_recording import import_recording
 from amalthea_uros.services.subject import open_system
-from fuzzing.seeds import seeds
 
 _SECONDS = 20
 _NUMBER = re.compile(rb"\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")

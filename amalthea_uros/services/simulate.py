@@ -7,13 +7,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.limits import CAMPAIGN_OCCURRENCES
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.campaign.run import RunOutcome, plan_runs
-from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob
+from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob, require_bounded_work
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep
 from amalthea_uros.diagnostics import Finding
@@ -27,7 +25,6 @@ from amalthea_uros.services.subject import Subject
 from amalthea_uros.simulate.options import ALL_LABELS, Options, SimulationMode
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.basics.stated_times import TimeLike, stated_time
-from amalthea_uros.units import time_text
 
 if TYPE_CHECKING:
     from amalthea_uros.analyze.impact import Impact
@@ -191,7 +188,7 @@ def simulate_campaign(
     changed = open_changed(paths, options.settings, changes, with_bus=with_bus)
     changed.check_sweeps(sweeps)
     _require_labels(options.labels, changed.system)
-    _require_bounded_work(changed.system, options, len(runs))
+    require_bounded_work(changed.system, options, len(runs))
     job, executor = SimulationJob(changed.origin, options, changed.changes), executor_for(len(runs), workers, cluster)
     return CampaignResult(
         paths=changed.opened.paths,
@@ -223,19 +220,6 @@ def _simulated(changed: ChangedSystem, options: Options, sinks: Sequence[OpenSin
         findings=unsuppressed((*changed.opened.findings, *simulation.findings)),
         differences=changed.differences,
     )
-
-
-def _require_bounded_work(system: System, options: Options, runs: int) -> None:
-    """Refuse a campaign that would take days before anybody notices."""
-    from amalthea_uros.simulate.arrivals import least_count
-
-    counts = {stimulus.name: least_count(stimulus, options.duration) for stimulus in system.stimuli.stimuli}
-    if (total := runs * sum(counts.values())) > CAMPAIGN_OCCURRENCES:
-        most = max(counts, key=lambda name: counts[name])
-        raise InvalidArgumentError(
-            f"in {counted(runs, 'run')} of {time_text(options.duration)} there are {total:,} activations, most by {most!r}; "
-            f"at most {CAMPAIGN_OCCURRENCES:,} are simulated; use fewer runs or a shorter duration"
-        )
 
 
 def _require_labels(names: Iterable[str], system: System) -> None:

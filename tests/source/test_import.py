@@ -142,7 +142,7 @@ def test_numbers_that_no_computer_has_are_refused_in_words_or_left_as_a_gap(numb
     loop = f"for (long i = {number}; i < 3; ++i) {{ rclc_publisher_init_default(&p[i], &node, type, topics[i]); }}"
     (tmp_path / "main.c").write_text(BODY.format(TIMER.format(number), loop + ADD + LOOP.format(f"usleep({number});")))
     (tmp_path / "app.meta").write_text(
-        f'{{"names": {{"rmw_microxrcedds": {{"cmake-args": ["-DRMW_UXRCE_MAX_NODES={number}", "-DUCLIENT_UDP_TRANSPORT_MTU={number}"]}}}}}}'
+        f'{{"names": {{"x": {{"cmake-args": ["-DRMW_UXRCE_MAX_NODES={number}", "-DUCLIENT_UDP_TRANSPORT_MTU={number}"]}}}}}}'
     )
     assert "TODO" in import_code([tmp_path]).text
 

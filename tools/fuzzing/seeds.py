@@ -43,7 +43,7 @@ _BUILD_FILES = {
     "app.meta": (ROOT / "tests" / "hostile" / "comments-and-commas.meta").read_bytes(),
     "my_msgs/msg/Own.msg": b"float64[<=6] positions\nstring<=20 name\nint32 X=5\nmy_msgs/Part[3] parts\n",
     "my_msgs/action/Count.action": b"int32 goal\n---\nint32[] result\n---\nstring<=8 feedback\n",
-    "my_msgs/msg/Wheels.idl": b"module my_msgs { module msg { typedef double d3[3]; struct Wheels { d3 speed; sequence<long, 4> t; }; }; };",
+    "my_msgs/msg/Wheels.idl": b"module my_msgs { module msg { typedef double d3[3]; struct W { d3 a; sequence<long, 4> t; }; }; };",
 }
 
 
