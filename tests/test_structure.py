@@ -46,7 +46,7 @@ LINES = {
     "source": 2970,
     "spec": 2956,
     "timing": 5626,
-    "trace": 5057,
+    "trace": 5064,
     "units": 206,
     "uros": 7443,
     "validate": 3660,
