@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from amalthea_uros.diagnostics import Finding
-
-#: A word that no line of a message has room for, and no file system for as a name (NAME_MAX of Linux is 255), and its beginning.
-_LONG_WORD = re.compile(r"([^\s'\"]{60})[^\s'\"]{240,}")
 
 
 class AmurosError(Exception):
@@ -36,13 +32,7 @@ class WriteError(AmurosError):
 
 
 class InvalidArgumentError(ValueError):
-    """An argument that cannot be right, such as a name that does not exist; the text says what was expected.
-
-    Of a word that is much longer than any name, the text has the beginning.
-    """
-
-    def __init__(self, message: str) -> None:
-        super().__init__(_LONG_WORD.sub(r"\1...", message))
+    """An argument that cannot be right, such as a name that does not exist; the text says what was expected."""
 
 
 class UnknownError(Exception):

@@ -49,6 +49,10 @@ SOURCES_SIZE = _FACTOR * 32 * 2**20
 SOURCE_FILES = _FACTOR * 5_000
 #: Occurrences of a stimulus in a simulation: machine code takes minutes for so many, Python hours.
 SIMULATED_OCCURRENCES = _FACTOR * 1_000_000_000
+#: Occurrences of all stimuli in all runs of a campaign: hours with machine code.
+CAMPAIGN_OCCURRENCES = _FACTOR * 100_000_000_000
+#: Values in the table of a campaign or a sweep; each takes about 60 bytes.
+CAMPAIGN_VALUES = _FACTOR * 20_000_000
 #: Numbers in the queues of activations that wait in a simulation; each takes up to 40 bytes.
 WAITING_NUMBERS = _FACTOR * 2**24
 #: Nodes of syntax trees that are visited, those of a function once for each of its calls.

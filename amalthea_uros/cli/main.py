@@ -14,7 +14,7 @@ import click
 from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros._version import __version__
 from amalthea_uros.cli.ends import INTERRUPTED, failed
-from amalthea_uros.report.basics.escape import visible
+from amalthea_uros.report.basics.escape import message_line
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -84,15 +84,15 @@ class LazyGroup(click.Group):
         try:
             _check_environment()
             return super().invoke(ctx)
-        except click.NoSuchOption as error:
+        except click.ClickException as given:
             from amalthea_uros.cli.wrong_options import explained
 
-            raise explained(error) from None
-        except click.ClickException as error:
+            error = explained(given) if isinstance(given, click.NoSuchOption) else given
             # The list of what can be given for a missing argument has lines of its own, and nothing of the user in it.
-            if error.format_message().isprintable() or isinstance(error, click.MissingParameter):
-                raise
-            raise click.UsageError(visible(error.format_message()), ctx) from None
+            message = error.format_message()
+            if message == message_line(message) or isinstance(error, click.MissingParameter):
+                raise error from None
+            raise click.UsageError(message_line(message), getattr(error, "ctx", ctx)) from None
         except KeyboardInterrupt:
             click.echo("interrupted", err=True)
             ctx.exit(INTERRUPTED)
@@ -181,7 +181,7 @@ def main() -> None:
     except InvalidArgumentError as error:
         from amalthea_uros.report.writers.terminal import Terminal
 
-        Terminal(sys.stderr).line(f"Error: {error}")
+        Terminal(sys.stderr).line(f"Error: {message_line(str(error))}")
         sys.exit(2)
     except OSError as error:
         sys.exit(failed(error))

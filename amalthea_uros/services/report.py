@@ -27,7 +27,7 @@ from amalthea_uros.services.waiting_messages import findings_of, with_analysed_s
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.timing.activation.load import activation_rates
 from amalthea_uros.timing.basics.settings import Settings
-from amalthea_uros.units import MILLISECOND, SECOND, Duration, Time
+from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND, Duration, Time
 
 if TYPE_CHECKING:
     from amalthea_uros.findings.presentation import Presentation
@@ -40,7 +40,7 @@ _DURATIONS = (
     5 * SECOND,
     2 * SECOND,
     SECOND,
-    *(part * MILLISECOND for part in (500, 200, 100, 50, 20, 10, 5, 2, 1)),
+    *(part * unit for unit in (MILLISECOND, MICROSECOND, NANOSECOND) for part in (500, 200, 100, 50, 20, 10, 5, 2, 1)),
 )
 #: About so many jobs and calls of runnables are executed in such a run: a second on a usual computer.
 _MOST_WORK = 20_000

@@ -11,7 +11,7 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.campaign.run import RunOutcome, plan_runs
-from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob
+from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob, require_bounded_work
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep
 from amalthea_uros.diagnostics import Finding
@@ -188,6 +188,7 @@ def simulate_campaign(
     changed = open_changed(paths, options.settings, changes, with_bus=with_bus)
     changed.check_sweeps(sweeps)
     _require_labels(options.labels, changed.system)
+    require_bounded_work(changed.system, options, len(runs))
     job, executor = SimulationJob(changed.origin, options, changed.changes), executor_for(len(runs), workers, cluster)
     return CampaignResult(
         paths=changed.opened.paths,

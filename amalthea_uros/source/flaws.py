@@ -13,6 +13,7 @@ from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
 from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated, session_users
+from amalthea_uros.source.scope import literal
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
 from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
@@ -75,7 +76,8 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
         option = facts.options.get(name)
         port = known_ports().get(facts.port)
         by_default, sizes = (port.pools_of or "by default", port.pools) if port is not None else ("by default", {})
-        size = int(option.value) if option is not None and option.value.isdecimal() else sizes.get(name, default)
+        stated_size = literal(option.value) if option is not None else None
+        size = stated_size if stated_size is not None and stated_size >= 0 else sizes.get(name, default)
         if len(used) > size:
             stated = by_default if name in sizes else "by default"
             if option is not None:

@@ -10,6 +10,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import BEST_EFFORT
 from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeFacts, CodeHandle
 from amalthea_uros.source.program import CodeProgram
+from amalthea_uros.source.scope import literal
 
 #: The MTU if nobody sets another one, and what an XRCE message has besides the data of a best-effort publication at least:
 #: eProsima/Micro-XRCE-DDS-Client CMakeLists.txt, include/uxr/client/core/session/session.h.
@@ -54,7 +55,9 @@ def _too_long(entity: CodeEntity, facts: CodeFacts) -> Iterator[Finding]:
     if entity.kind not in (CodeEntityKind.PUBLISHER, CodeEntityKind.SUBSCRIPTION):
         return
     stated = [
-        int(option.value) for name, option in facts.options.items() if _MTU_OPTION.fullmatch(name) and option.value.isdecimal()
+        size
+        for name, option in facts.options.items()
+        if _MTU_OPTION.fullmatch(name) and (size := literal(option.value)) is not None and size >= 0
     ]
     mtu = max(stated, default=_MTU)
     if length.bytes > mtu - _HEADERS:

@@ -297,8 +297,8 @@ class CodeWalk:
         low, high = self._expression(first, context).number, self._expression(right, context).number
         if low is None or high is None or text_of(operator) not in ("<", "<=", "!="):
             return None
-        values = range(low, high + (text_of(operator) == "<="))
-        return (name, values) if len(values) <= _MAX_ITERATIONS else None
+        end = high + (text_of(operator) == "<=")
+        return (name, range(low, end)) if end - low <= _MAX_ITERATIONS else None
 
     def _choice(self, node: Node, context: _WalkPosition) -> None:
         condition = node.child_by_field_name("condition")

@@ -1,5 +1,7 @@
 """Options that do not exist, or had another name, and files whose suffix is that of another format: what to write instead."""
 
+import re
+
 import pytest
 from command import amuros
 from support import ROOT
@@ -59,3 +61,25 @@ def test_the_commands_are_grouped_by_task():
     assert [line for line in lines if line.endswith(":") and line[0] != " "] == [
         *("Options:", "Describe:", "Check and predict:", "Improve:", "Measure:", "Work with models:", "Look up and set up:")
     ]
+
+
+#: Wrong words of 5,000 characters.
+LONG = {
+    "set": ["analyze", APP, "--set", "Executor_Task.period=" + "9" * 5000],
+    "object": ["analyze", APP, "--set", "x" * 5000 + ".period=1ms"],
+    "no change": ["analyze", APP, "--set", "x" * 5000],
+    "option": ["check", APP, "--" + "x" * 5000],
+    "format": ["check", APP, "--output", "x" * 5000],
+    "sweep": ["sweep", APP, "--sweep", "A.period=" + "9" * 5000 + "ms..1s/1ms"],
+    "seed": ["simulate", APP, "--seed", "9" * 5000],
+    "rule": ["explain", "x" * 5000],
+    "command": ["x" * 5000],
+}
+
+
+@pytest.mark.parametrize("words", LONG.values(), ids=LONG)
+def test_a_long_word_does_not_hide_what_is_said_about_it(words):
+    run = amuros(*words)
+    assert run.returncode == 2
+    assert len(run.stderr) < 1000
+    assert re.search(r"\.\.\. \(5,\d{3} characters\)", run.stderr)

@@ -17,8 +17,8 @@ import campaign_jobs
 import pytest
 from support import ROOT
 
-from amalthea_uros.design.campaign import executors
-from amalthea_uros.design.campaign.campaign import run_campaign
+from amalthea_uros.design.campaign import campaign, executors
+from amalthea_uros.design.campaign.campaign import finished_runs, run_campaign
 from amalthea_uros.design.campaign.executors import cluster, processes, serial
 from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import SimulationJob
@@ -47,6 +47,23 @@ def test_each_variant_is_run_with_the_same_seeds():
 def test_the_number_of_runs_is_limited(repetitions, message):
     with pytest.raises(InvalidArgumentError, match=message):
         plan_runs([], repetitions, 1)
+
+
+def test_more_values_than_can_be_kept_are_refused_after_the_first_run(monkeypatch):
+    monkeypatch.setattr(campaign, "CAMPAIGN_VALUES", 100)
+    executed = []
+
+    def job(run):
+        executed.append(run.number)
+        return {f"c{number}": number for number in range(10)}
+
+    assert len(finished_runs(job, runs(10), serial)) == 10
+    executed.clear()
+    with pytest.raises(
+        InvalidArgumentError, match=r"11 runs with 10 values each .* at most 100 values are kept, those of 10 runs"
+    ):
+        finished_runs(job, runs(11), serial)
+    assert executed == [1]
 
 
 def test_the_columns_of_a_run_have_numbers_in_internal_units():

@@ -1,11 +1,16 @@
 """A simulation takes no more memory the denser its activations are, and says beforehand what would take days."""
 
+import gc
+
 import pytest
 from by_hand import built
 from hand_made_systems import Proc, ticks
 
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.stimuli import Periodic, Single, Synthetic
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.report import compile_report
+from amalthea_uros.services.simulate import simulate_campaign
 from amalthea_uros.simulate.arrivals import least_count, occurrences
 from amalthea_uros.simulate.options import Mode, Options
 from amalthea_uros.simulate.runs import driver
@@ -63,3 +68,43 @@ def test_a_run_ends_where_no_more_activations_can_be_kept(monkeypatch):
     assert finding.message.endswith("activations of 'often' wait; the run ends there")
     # One job in 2 us; what was seen before counts.
     assert 0 < found.processes["often"].jobs < 5000
+
+
+def test_the_memory_of_a_run_is_free_once_it_is_evaluated():
+    """Garbage is collected rarely, so that a campaign of short runs would take a gigabyte."""
+
+    def long_lists():
+        return sum(type(each) is list and len(each) > 50_000 for each in gc.get_objects())
+
+    system, options = built(Proc("T", (ticks(1),), 1)), Options(duration=10 * US)
+    simulate_system(system, options)
+    gc.collect()
+    before = long_lists()
+    gc.disable()
+    try:
+        simulate_system(system, options)
+        assert long_lists() == before
+    finally:
+        gc.enable()
+
+
+DENSE = """
+amuros: 1
+name: app
+hardware: {platform: single-core, frequency: 100 MHz}
+tasks:
+  - {name: A, period: 1 ps, execution_time: 1 ps, priority: 1}
+"""
+
+
+def test_a_campaign_that_would_take_days_is_refused_before_its_first_run(tmp_path):
+    path = tmp_path / "app.yaml"
+    path.write_text(DENSE)
+    message = "in 1,000,000 runs of 1 us there are 1,000,000,000,000 activations, most by 'every_1_ps'; at most 100,000,000,000"
+    with pytest.raises(InvalidArgumentError, match=message):
+        simulate_campaign(path, Options(duration=US), repetitions=1_000_000, on_outcome=pytest.fail)
+
+
+def test_a_report_simulates_few_jobs_however_short_a_period_is():
+    """In each picosecond, there are a job and a call of a runnable."""
+    assert 2 * compile_report(DENSE).simulation.options.duration == 20_000

@@ -137,6 +137,16 @@ def test_a_header_with_a_guard_is_read(tmp_path):
     assert "period: 40 ms" in import_code([tmp_path]).text
 
 
+@pytest.mark.parametrize("number", ["9" * 5000, "-9223372036854775808", "1e400", "\u00b2"])
+def test_numbers_that_no_computer_has_are_refused_in_words_or_left_as_a_gap(number, tmp_path):
+    loop = f"for (long i = {number}; i < 3; ++i) {{ rclc_publisher_init_default(&p[i], &node, type, topics[i]); }}"
+    (tmp_path / "main.c").write_text(BODY.format(TIMER.format(number), loop + ADD + LOOP.format(f"usleep({number});")))
+    (tmp_path / "app.meta").write_text(
+        f'{{"names": {{"x": {{"cmake-args": ["-DRMW_UXRCE_MAX_NODES={number}", "-DUCLIENT_UDP_TRANSPORT_MTU={number}"]}}}}}}'
+    )
+    assert "TODO" in import_code([tmp_path]).text
+
+
 def test_build_options_decide_what_the_pools_hold(tmp_path):
     (tmp_path / "main.c").write_text(BODY.format(TIMER.format("5000000"), ADD + LOOP.format("usleep(1);")))
     (tmp_path / "app-colcon.meta").write_text(

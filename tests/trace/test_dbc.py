@@ -1,5 +1,7 @@
 """DBC files: identifiers, exact values of signals, and what they say about time."""
 
+import subprocess
+import sys
 from fractions import Fraction
 
 import pytest
@@ -44,6 +46,18 @@ def test_messages(database):
     times, slow = database.messages["Times"], database.messages["Slow"]
     assert (times.identifier, times.length, times.senders, times.receivers) == (0x18000001 | EXTENDED, 8, ("ECU",), ("Tool",))
     assert (slow.identifier, slow.senders) == (0x123, ())
+
+
+def test_two_messages_of_one_name_are_refused_in_our_words_alone(tmp_path):
+    path = tmp_path / "bus.dbc"
+    path.write_text(TEXT.replace("SIG_VALTYPE_", "BO_ 9 Slow: 4 ECU\n\nSIG_VALTYPE_"))
+    with pytest.raises(ReadError, match="2 messages have the name 'Slow'"):
+        read_dbc(path)
+    # Messages of a library reach standard error only where nothing else takes them, and pytest does.
+    code = f"from pathlib import Path; from amalthea_uros.trace.can.dbc import read_dbc; read_dbc(Path({str(path)!r}))"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "ReadError" in run.stderr
+    assert "Overwriting" not in run.stderr
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,13 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import closing, suppress
 from itertools import islice
+from sys import intern
 
+from amalthea_uros._internal.limits import CAMPAIGN_VALUES
+from amalthea_uros._internal.records import replace
 from amalthea_uros.design.campaign.executors import Executor, Workers, serial
 from amalthea_uros.design.campaign.run import CampaignRun, Job, RunOutcome
+from amalthea_uros.errors import InvalidArgumentError
 
 #: Runs are sent in chunks only if there are more than so many for each worker: an interruption loses the chunks that are not finished.
 _SINGLE_RUNS = 256
@@ -73,10 +77,21 @@ def finished_runs(
     outcomes: list[RunOutcome] = []
     with suppress(KeyboardInterrupt), closing(run_campaign(job, runs, executor)) as finished:
         for outcome in finished:
-            outcomes.append(outcome)
+            outcomes.append(_compact(outcome, len(runs)))
             if on_outcome is not None:
                 on_outcome(outcome)
     return tuple(sorted(outcomes, key=lambda outcome: outcome.run.number))
+
+
+def _compact(outcome: RunOutcome, runs: int) -> RunOutcome:
+    """An outcome that shares the names of its columns with all others; refuse more outcomes of this size than can be kept."""
+    columns = len(outcome.record)
+    if columns * runs > CAMPAIGN_VALUES:
+        raise InvalidArgumentError(
+            f"{runs:,} runs with {columns:,} values each are too many to keep; at most {CAMPAIGN_VALUES:,} values are kept, "
+            f"those of {CAMPAIGN_VALUES // columns:,} runs"
+        )
+    return replace(outcome, record={intern(name): value for name, value in outcome.record.items()})
 
 
 def _chunks(runs: Sequence[CampaignRun], workers: int) -> Iterator[Sequence[CampaignRun]]:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from amalthea_uros._internal.limits import CAMPAIGN_OCCURRENCES
+from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantResults, compact_bytes, origin_from
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.origin import ChangeOrigin
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.named import Brief
+from amalthea_uros.perf.system import System
 from amalthea_uros.simulate.options import Options
+from amalthea_uros.units import time_text
 
 #: The end of the columns with verdicts in a row of a table.
 _VERDICT = ".verdict"
@@ -68,6 +73,24 @@ class CampaignResult(Brief, VariantResults):
 def judged_in(record: Record, verdict: ObservedVerdict) -> list[str]:
     """What has a verdict in a run, by the columns with verdicts; lost activations are one that was missed."""
     return [name.removesuffix(_VERDICT) for name, value in record.items() if name.endswith(_VERDICT) and value == verdict]
+
+
+def require_bounded_work(system: System, options: Options, runs: int) -> None:
+    """Refuse a campaign that would take days.
+
+    Raises
+    ------
+    InvalidArgumentError : the stimuli occur more often in all runs together than is simulated.
+    """
+    from amalthea_uros.simulate.arrivals import least_count
+
+    counts = {stimulus.name: least_count(stimulus, options.duration) for stimulus in system.stimuli.stimuli}
+    if (total := runs * sum(counts.values())) > CAMPAIGN_OCCURRENCES:
+        most = max(counts, key=lambda name: counts[name])
+        raise InvalidArgumentError(
+            f"in {counted(runs, 'run')} of {time_text(options.duration)} there are {total:,} activations, most by {most!r}; "
+            f"at most {CAMPAIGN_OCCURRENCES:,} are simulated; use fewer runs or a shorter duration"
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,10 @@ _SHORT = {"\t": r"\t", "\n": r"\n", "\r": r"\r"}
 #: The bytes of file names that are no text, as Python has them (PEP 383).
 _BYTES = range(0xDC80, 0xDD00)
 
+#: Paths of deep folders are words of some hundred characters.
+_LONG_WORD = re.compile(r"[^\s'\",;]{500,}")
+_SHOWN = 100
+
 #: What a runner takes for a command: of GitHub at the start of a line, or of GitHub's first form and Azure Pipelines anywhere.
 _COMMAND = re.compile(r"^(\s*):(?=:)|#(?=#(?:\[|vso\[))")
 
@@ -29,6 +33,15 @@ def visible(text: str) -> str:
     'a\\nb\\x1b[31m\\u202e'
     """
     return text if text.isascii() and text.isprintable() else _HIDDEN.sub(_escape, text)
+
+
+def message_line(text: str) -> str:
+    r"""A message in one line; words that a user or a file has given are cut where they are so long that they hide it.
+
+    >>> message_line("unknown chain '" + "x" * 5000 + "'").endswith("xxx... (5,000 characters)'")
+    True
+    """
+    return _LONG_WORD.sub(lambda word: f"{word[0][:_SHOWN]}... ({len(word[0]):,} characters)", visible(text))
 
 
 def output_line(text: str) -> str:

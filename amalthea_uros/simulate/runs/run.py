@@ -42,4 +42,7 @@ def simulate_system(
     run = SimulationRun(context, options, program, kept)
     with ExitStack() as stack:
         run.execute([stack.enter_context(open_sink(program.entities)) for open_sink in sinks])
-    return RunEvaluation(run).result()
+    result = RunEvaluation(run).result()
+    # Run and driver refer to each other: the memory of each run would be kept until garbage is collected, which is rare.
+    run.driver.memory = []
+    return result

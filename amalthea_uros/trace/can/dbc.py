@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+from collections import Counter
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isfinite
@@ -120,12 +122,18 @@ def read_dbc(path: Path) -> DbcDatabase:
         raise ReadError([Finding("CAN012", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     if (wrong := wrong_size(text)) is not None:
         raise ReadError([_invalid(wrong.message, Location(path, wrong.line, wrong.column))])
+    # Warnings of cantools would be written to standard error as they are.
+    logging.getLogger("cantools").addHandler(logging.NullHandler())
     database = CantoolsDatabase()
     try:
         database.add_dbc_string(text)
-        return DbcDatabase(path, {message.name: _message(message) for message in database.messages})
+        messages = [_message(message) for message in database.messages]
     except Exception as error:  # of many kinds: of the parser, of cantools, and of what it uses
         raise ReadError([_not_dbc(path, error)]) from None
+    name, count = max(Counter(message.name for message in messages).items(), key=lambda each: each[1], default=("", 0))
+    if count > 1:
+        raise ReadError([_invalid(f"{count} messages have the name {name!r}", Location(path))])
+    return DbcDatabase(path, {message.name: message for message in messages})
 
 
 def _message(message: CantoolsMessage) -> DbcMessage:

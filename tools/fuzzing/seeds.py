@@ -1,0 +1,134 @@
+"""The files from which those for a reader are made: path within a folder -> content."""
+
+from __future__ import annotations
+
+import importlib
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from random import Random
+
+from templating import ROOT
+
+from amalthea_uros.services.export import export
+from amalthea_uros.trace.sinks import WRITERS, WriteOptions, open_sink
+
+Files = Mapping[str, bytes]
+
+_SAMPLES = ROOT / "samples"
+_CORPUS = ROOT.parent / "shared" / "corpus"
+_MAX_SIZE = 30_000
+_FRAMES = 40
+_LOG = b"".join(b"(1.%06d) can0 %03X#%02X00112233\n" % (100 * i, 1 + i % 2, i // 2) for i in range(_FRAMES))
+_DBC = b"""VERSION ""\n\nNS_ :\n\nBS_:\n\nBU_: ECU\n
+BO_ 1 Debug: 8 ECU
+ SG_ Which M : 0|8@1+ (1,0) [0|0] "" ECU
+ SG_ Time m0 : 8|16@1- (0.5,-3) [0|0] "us" ECU
+ SG_ Job m1 : 24|8@0+ (1,0) [0|0] "" ECU
+BO_ 2 Other: 8 ECU
+ SG_ Value : 0|32@1- (1,0) [0|0] "ms" ECU\n
+SIG_VALTYPE_ 2 Value : 1;
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_ "GenMsgCycleTime" BO_ 1 10;
+"""
+_MARKERS = b"A: {value: Debug.Time, unit: us}\nB: {value: Other.Value, unit: ms}\nC: {start: 0x1, end: 0x2, counter: byte 0}\n"
+_TABLE = b"start_us,end_us,valid,name\n" + b"".join(b"%d.5,%d,1,x\n" % (10 * i, 10 * i + 3) for i in range(20))
+_SOURCE = (_SAMPLES / "sources" / "int32_publisher.c").read_bytes()
+_BUILD_FILES = {
+    "platformio.ini": b"[env:robot]\nboard = pico\nframework = arduino\nboard_build.f_cpu = 80000000L\n",
+    "prj.conf": b"CONFIG_MICROROS=y\nCONFIG_MAIN_STACK_SIZE=2048\n",
+    "sdkconfig": b"CONFIG_FREERTOS_HZ=1000\nCONFIG_ESP_DEFAULT_CPU_FREQ_MHZ=160\n",
+    "CMakeLists.txt": b"pico_sdk_init()\npico_enable_stdio_usb(app 1)\n",
+    "app.meta": (ROOT / "tests" / "hostile" / "comments-and-commas.meta").read_bytes(),
+    "my_msgs/msg/Own.msg": b"float64[<=6] positions\nstring<=20 name\nint32 X=5\nmy_msgs/Part[3] parts\n",
+    "my_msgs/action/Count.action": b"int32 goal\n---\nint32[] result\n---\nstring<=8 feedback\n",
+    "my_msgs/msg/Wheels.idl": b"module my_msgs { module msg { typedef double d3[3]; struct W { d3 a; sequence<long, 4> t; }; }; };",
+}
+
+
+@cache
+def seeds(reader: str) -> Sequence[Files]:
+    """The seeds of a reader of `tools/fuzz_readers.py`."""
+    return _SEEDS[reader]()
+
+
+def _files(folder: Path, pattern: str, count: int = 40) -> Sequence[Files]:
+    found = [path for path in sorted(folder.rglob(pattern)) if path.is_file() and path.stat().st_size <= _MAX_SIZE]
+    return [{f"case{path.suffix}": path.read_bytes()} for path in Random(1).sample(found, min(count, len(found)))]
+
+
+def _baselines() -> Sequence[Files]:
+    return [{"baseline.json": b'{"amuros-baseline": 1, "accepted": {"ab12": "XMI020 x", "cd": "TIM-OVERLOAD"}}\n'}]
+
+
+def _descriptions() -> Sequence[Files]:
+    return [files for files in _files(_SAMPLES, "*.yaml") if b"TODO" not in files["case.yaml"]]
+
+
+def _projects() -> Sequence[Files]:
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("bodas-test-simple", "robot-xrce"):
+            export([_SAMPLES / f"{name}.yaml"], Path(folder) / f"{name}.iprx")
+        return [{"case.iprx": path.read_bytes()} for path in sorted(Path(folder).iterdir())]
+
+
+def _can_logs() -> Sequence[Files]:
+    import can
+
+    found = [{"run.log": _LOG}]
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix in (".asc", ".blf", ".trc"):
+            path = Path(folder) / f"run{suffix}"
+            with can.Logger(path) as logger:
+                for i in range(_FRAMES):
+                    logger(can.Message(1 + i / 10_000, arbitration_id=1 + i % 2, data=[i // 2, 0, 1], is_extended_id=False))
+            found.append({path.name: path.read_bytes()})
+    return found
+
+
+def _traces() -> Sequence[Files]:
+    logs, traces, ctf = (importlib.import_module(name) for name in ("test_scheduler_logs", "traces", "ctf_traces"))
+    found = [{"run.txt": text.encode()} for text in (logs.NUTTX, logs.TRACE32)]
+    found += [{"run.csv": text.encode()} for text in (logs.SYSTEMVIEW, logs.TRACEALYZER)]
+    thread = (5, "worker")
+    events = [
+        ctf.zephyr_event(1000 * i, name, thread) for i, name in enumerate(6 * ("thread_switched_in", "isr_enter", "isr_exit"))
+    ]
+    found += [{"metadata": ctf.zephyr_metadata().encode(), "channel0_0": b"".join(events)}]
+    with tempfile.TemporaryDirectory() as folder:
+        for number, suffix in enumerate(WRITERS):
+            if suffix in (".btf", ".csv"):
+                path, trace = Path(folder) / f"{number}{suffix}", traces.random_trace(Random(number))
+                with open_sink(path, trace.entities, WriteOptions()) as sink:
+                    sink.write(trace)
+                found.append({f"run{suffix}": path.read_bytes()})
+    return found
+
+
+def _recordings() -> Sequence[Files]:
+    folder = _SAMPLES / "robot-recording"
+    return [{str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}]
+
+
+def _sources() -> Sequence[Files]:
+    programs = [*(_SAMPLES / "sources").iterdir(), *(ROOT / "tests" / "source" / "programs").iterdir()]
+    alone = [{path.name: path.read_bytes()} for path in sorted(programs) if path.suffix in (".c", ".cpp", ".ino")]
+    return [*alone, *len(alone) * [{"node.c": _SOURCE, **_BUILD_FILES}]]
+
+
+_SEEDS: Mapping[str, Callable[[], Sequence[Files]]] = {
+    "amxmi": lambda: [*_files(_SAMPLES, "*.amxmi"), *_files(ROOT / "tests" / "data", "*.amxmi")],
+    "baseline": _baselines,
+    "can": _can_logs,
+    "dbc": lambda: [{"run.log": _LOG, "markers.yml": _MARKERS, "bus.dbc": _DBC}],
+    "description": _descriptions,
+    "description-checked": _descriptions,
+    "iprx": _projects,
+    "meta": lambda: _files(ROOT / "tests" / "hostile", "*.meta"),
+    "older-amxmi": lambda: _files(_CORPUS, "*.amxmi"),
+    "recording": _recordings,
+    "sources": _sources,
+    "table": lambda: [{"values.csv": _TABLE}],
+    "trace": _traces,
+}
