@@ -28,6 +28,7 @@ from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.relays import comes_regularly
+from amalthea_uros.timing.activation.releases import latest_first_release
 from amalthea_uros.timing.dataflow.links import UNTIMED
 from amalthea_uros.timing.dataflow.routes import routes
 from amalthea_uros.timing.touching import awaited
@@ -113,14 +114,12 @@ class CallbackHops:
         return self.executors[segment.executor.name].handles[segment.handle.name]
 
     def _longest_interval(self, segment: CallbackSegment) -> Time | None:
-        """The maximum time between two nominal arrivals, or expirations; None if there is none."""
+        """The maximum time between two nominal arrivals, or expirations, or until the first one; None if there is none."""
         handle = segment.handle
-        if handle.kind is HandleKind.TIMER:
-            return longest_until_due(handle)
-        jitter = self.jitter.get(handle.name, 0)
-        if handle.interval is None or jitter is None or not comes_regularly(handle, self.system):
-            return None
-        return handle.interval + handle.jitter + jitter
+        interval, jitter = longest_until_due(handle), self.jitter.get(handle.name, 0)
+        if handle.kind is HandleKind.TIMER or interval is None:
+            return interval
+        return None if jitter is None or not comes_regularly(handle, self.system) else interval + handle.jitter + jitter
 
 
 def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: ChainEvaluator) -> Hop:
@@ -146,6 +145,9 @@ def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: C
     if wait is None:
         reason = f"the maximum time between two activations of {segment.processes[0]!r} is unknown"
         return _unknown(entry, name, reason, f"See the results of {segment.processes[0]!r}.")
+    if entry in (EntryKind.DATA, EntryKind.POLLING):
+        # Data can also come before its first activation.
+        wait += _until_first_activation(segment.processes[0], evaluator)
     parts = (
         TimePart(name=f"until {segment.processes[0]} is activated", least=0, most=wait),
         TimePart(name=f"from its activation through {name}", least=0, most=bound.value),
@@ -158,6 +160,13 @@ def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: C
         source=f"{bound.method} ({bound.source})",
         parts=parts if wait else (),
     )
+
+
+def _until_first_activation(process: str, evaluator: ChainEvaluator) -> Time:
+    """How much longer the time to the first activation of a process can be than that between two of them."""
+    activations, system = evaluator.solution.event_models.get(process), evaluator.context.system
+    between = 0 if activations is None else activations.max_interarrival or 0
+    return max(0, latest_first_release(system.processes[process], system) - between)
 
 
 def _bound(events: Sequence[Event], entry: EntryKind, evaluator: ChainEvaluator) -> LatencyValue:

@@ -169,4 +169,4 @@ def _gaps(cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> Iterator[Tim
         if comes_regularly(handle, cycle.solved.context.system):
             with suppress(UnknownError):
                 events = arrivals(handle, extra_jitter)
-                yield events.period + events.jitter
+                yield max(events.period, handle.phase or 0) + events.jitter

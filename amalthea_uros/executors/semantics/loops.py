@@ -86,9 +86,9 @@ def longest_wait(executor: Executor) -> Time:
     return min([timeout_of(executor), *(cut(until, executor) for until in pending)])
 
 
-def longest_until_due(timer: Handle) -> Time | None:
-    """The longest time until a timer is due: its period, or that until it is due for the first time; None if it is not known."""
-    return None if timer.interval is None else max(timer.interval, timer.phase or 0)
+def longest_until_due(handle: Handle) -> Time | None:
+    """The longest time until a timer is due, or a message is sent: its period, or that until the first time; None if unknown."""
+    return None if handle.interval is None else max(handle.interval, handle.phase or 0)
 
 
 def busy_polls(executor: Executor) -> str:
