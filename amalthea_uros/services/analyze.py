@@ -16,8 +16,6 @@ from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes
-from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.names import require
 from amalthea_uros.perf.named import Brief
@@ -170,7 +168,9 @@ def analyze_files(
         proposals = tuple(propose_priorities(analysis))
     missing = None
     if with_missing:
-        missing = _missing_values(changed, analysis)
+        from amalthea_uros.services.missing import missing_from
+
+        missing = missing_from(changed, analysis)
     return AnalysisResult(
         paths=changed.opened.paths,
         task_periods=changed.opened.task_periods,
@@ -195,17 +195,6 @@ def _analyzed(changed: ChangedSystem) -> Analysis:
     report_machine_code()
     opened = changed.opened
     return replace(analysis, findings=shown_findings(opened.findings, opened.assembly, analysis))
-
-
-def _missing_values(changed: ChangedSystem, analysis: Analysis) -> MissingValues | None:
-    from amalthea_uros.design.missing_values import missing_values
-
-    source = changed.source
-    if source is None:
-        return missing_values(SystemOrigin(Configuration(changed.system, changed.settings)), analysis, changed.changes)
-    from amalthea_uros.design.description.unset import unset_times
-
-    return missing_values(source, analysis, changed.changes, tuple(unset_times(source)))
 
 
 #: What can be explained: an analysis, or what can be analyzed.

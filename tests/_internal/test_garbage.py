@@ -25,6 +25,7 @@ def made(count):
 
 @pytest.fixture
 def few_objects(monkeypatch):
+    gc.collect()  # what other tests have left
     threshold = gc.get_threshold()
     gc.set_threshold(10)
     monkeypatch.setattr(garbage, "FEW_OBJECTS", 1000)

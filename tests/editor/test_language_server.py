@@ -4,11 +4,13 @@ import json
 import sys
 
 import pytest
+from click.testing import CliRunner
 from command import amuros
 from language_client import LanguageClient, at
 from support import MODEL, ROOT
 
 from amalthea_uros import analyze_files
+from amalthea_uros.cli.main import cli
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.validate.settings import CheckSettings
 
@@ -291,6 +293,6 @@ server.create_server().start_io()
 
 def test_without_pygls_the_command_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pygls", None)
-    run = amuros("lsp")
-    assert run.returncode == 2
+    run = CliRunner().invoke(cli, ["lsp"])
+    assert run.exit_code == 2
     assert 'pip install "amuros[lsp]"' in run.stderr

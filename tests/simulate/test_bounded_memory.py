@@ -76,7 +76,7 @@ def test_the_memory_of_a_run_is_free_once_it_is_evaluated():
     def long_lists():
         return sum(type(each) is list and len(each) > 50_000 for each in gc.get_objects())
 
-    system, options = built(Proc("T", (ticks(1),), 1)), Options(duration=10 * US)
+    system, options = built(Proc("T", (ticks(1),), 1)), Options(duration=Duration(10 * US))
     simulate_system(system, options)
     gc.collect()
     before = long_lists()
@@ -102,7 +102,7 @@ def test_a_campaign_that_would_take_days_is_refused_before_its_first_run(tmp_pat
     path.write_text(DENSE)
     message = "in 1,000,000 runs of 1 us there are 1,000,000,000,000 activations, most by 'every_1_ps'; at most 100,000,000,000"
     with pytest.raises(InvalidArgumentError, match=message):
-        simulate_campaign(path, Options(duration=US), repetitions=1_000_000, on_outcome=pytest.fail)
+        simulate_campaign(path, Options(duration=Duration(US)), repetitions=1_000_000, on_outcome=pytest.fail)
 
 
 def test_a_report_simulates_few_jobs_however_short_a_period_is():

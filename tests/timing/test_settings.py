@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from amalthea_uros import Settings
+from amalthea_uros import Duration, Settings
 
 
 @pytest.mark.parametrize(
@@ -14,7 +14,7 @@ from amalthea_uros import Settings
         ({"frequencies": {"core": Fraction(-1)}}, "core: -1 is not positive"),
         ({"growth": Fraction(-1)}, "growth: -1 is negative"),
         ({"factors": {"T": Fraction(-1)}}, "T: -1 is negative"),
-        ({"phases": {"S": -5}}, "S: -5 is negative"),
+        ({"phases": {"S": Duration(-5)}}, "S: -5 is negative"),
     ],
 )
 def test_a_number_out_of_range(settings, message):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections import Counter
 from collections.abc import Callable, Mapping
 from fractions import Fraction
@@ -122,6 +121,8 @@ def read_dbc(path: Path) -> DbcDatabase:
         raise ReadError([Finding("CAN012", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     if (wrong := wrong_size(text)) is not None:
         raise ReadError([_invalid(wrong.message, Location(path, wrong.line, wrong.column))])
+    import logging
+
     # Warnings of cantools would be written to standard error as they are.
     logging.getLogger("cantools").addHandler(logging.NullHandler())
     database = CantoolsDatabase()
