@@ -172,6 +172,25 @@ def test_an_interrupt_at_any_moment_is_quiet_and_leaves_no_file(calls, name, tmp
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["simulate", YAML, "--duration", "1h", "--trace", "run.btf"],
+        ["sweep", YAML, "--sweep", "Control_Function.execution_time=1us..900us/1us", "-o", "table.csv"],
+        ["report", YAML, "-o", "report.html"],
+        ["export", YAML, "-o", "project.iprx"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_an_interrupt_of_a_long_command_leaves_no_file(words, tmp_path):
+    code = INTERRUPTED_AFTER.format(calls=100_000, name="SIGINT", arguments=["amuros", *map(str, words)])
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, text=True, timeout=60, cwd=tmp_path)
+    assert run.returncode == 130, run.stderr
+    assert run.stderr.splitlines()[-1] == "interrupted"
+    assert "Traceback" not in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_command_line_ends_in_words_when_the_memory_is_short():
     code = "import amalthea_uros.cli.main as m\ndef main(): raise MemoryError\nm.main = main\n"
     code += "from amalthea_uros.cli.process import run; run()"
