@@ -12,10 +12,12 @@ from opponent.simulation import record
 from waiting_player import PlayedTask, Player
 
 from amalthea_uros import analyze_system
+from amalthea_uros.analyze.results.processes import Metric
 from amalthea_uros.perf.activities import ClearEvent, SetEvent, Trigger, WaitEvent, Waiting
 from amalthea_uros.perf.software import OsEvent
 from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.runs.run import simulate_system
+from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import Duration
 
@@ -217,3 +219,11 @@ def test_no_job_of_any_run_is_beyond_its_bounds(drawn):
             assert min(steady, default=longest) >= best
     lost = set().union(*(player.lost for player in players))
     assert not any(name in bounds and found[name].verdict == "met" for name in lost)
+
+
+def test_activations_of_an_overload_that_waits_surround_can_be_lost():
+    # Nothing sets the event for which `Waiting` waits, and `High` leaves 3 us in 12 us, of which `Low` needs 5 us.
+    waiting = Proc("Waiting", (ticks(9), wait(), clear(), ticks(6)), 40, priority=3)
+    found = analyze_system(built(waiting, Proc("High", (ticks(9),), 12, priority=2), Proc("Low", (ticks(5),), 12, priority=1)))
+    assert found["Low"].response.is_overload
+    assert found["Low"].metrics[JobMetric.ACTIVATE_TO_ACTIVATE] == Metric(min=12 * US, max=None)

@@ -138,7 +138,7 @@ class MetricEvaluator:
         yield JobMetric.NET_EXECUTION_TIME, Metric(min=bcet, max=longest)
         if process.min_interarrival is not None and process.name not in self.solution.losing:
             # Activations can be lost if it is unknown how long jobs are pending.
-            longest_gap = None if response is None else process.max_interarrival
+            longest_gap = None if response is None or response.worst is None else process.max_interarrival
             yield JobMetric.ACTIVATE_TO_ACTIVATE, Metric(min=process.min_interarrival, max=longest_gap)
         if response is None:
             return
