@@ -38,7 +38,7 @@ LINES = {
     "measure": 1121,
     "metamodel": 3288,
     "names": 17,
-    "perf": 1722,
+    "perf": 1730,
     "platforms": 0,
     "report": 8645,
     "services": 2614,

@@ -16,11 +16,11 @@ from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware
 from amalthea_uros.perf.host import Host, HostCallback
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.network import Network, Transmission
+from amalthea_uros.perf.network import Direction, Network, Span, Transmission
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
 from amalthea_uros.perf.software import Channel, Label, Process, Runnable, Software
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
-from amalthea_uros.units import Frequency
+from amalthea_uros.units import Frequency, Time
 
 N = TypeVar("N", bound=Named)
 
@@ -183,6 +183,17 @@ class System:
     def transmissions(self) -> Mapping[str, Transmission]:
         """The messages on wires, by the tasks that stand for them."""
         return _by_name(self.network.transmissions)
+
+    def in_driver(self, transmission: Transmission) -> Span:
+        """The time that a received message is in the driver, where it waits for those before it: none overtakes another one."""
+        return replace(transmission.driver, most=self._longest_in_driver[transmission.wire, transmission.direction])
+
+    @cached_property
+    def _longest_in_driver(self) -> Mapping[tuple[str, Direction], Time | None]:
+        times: dict[tuple[str, Direction], list[Time | None]] = {}
+        for each in self.network.transmissions:
+            times.setdefault((each.wire, each.direction), []).append(each.driver.most)
+        return {key: None if None in found else max(time for time in found if time is not None) for key, found in times.items()}
 
 
 def _by_name(objects: Iterable[N]) -> dict[str, N]:

@@ -28,14 +28,14 @@ def received(transmission: Transmission, solved: SolvedSystem) -> Iterator[Hop]:
     """From the first byte of a message on the wire until the executor, or the process that takes it, can see it."""
     yield wire_hop(transmission, solved)
     yield from _link(transmission)
-    yield from _driver(transmission)
+    yield from _driver(transmission, solved.context.system.in_driver(transmission))
     for name in transmission.processes:
         yield process_hop(name, solved)
 
 
 def sent(transmission: Transmission, solved: SolvedSystem) -> Iterator[Hop]:
     """From the end of the callback that sends a message to its last byte at the agent."""
-    yield from _driver(transmission)
+    yield from _driver(transmission, transmission.driver)
     yield wire_hop(transmission, solved)
     yield from _link(transmission)
 
@@ -165,12 +165,12 @@ def _link(transmission: Transmission) -> Iterator[Hop]:
         )
 
 
-def _driver(transmission: Transmission) -> Iterator[Hop]:
-    if transmission.driver != Span(most=0):
+def _driver(transmission: Transmission, time: Span) -> Iterator[Hop]:
+    if time != Span(most=0):
         yield _of_span(
             HopKind.DRIVER,
             f"driver of {transmission.wire}",
-            transmission.driver,
+            time,
             f"the time in the driver of {transmission.wire!r} is unknown",
             "Set 'tick' of its driver, or of the operating system.",
         )

@@ -295,7 +295,7 @@ class Activations:
         if transmission is None:
             return completions
         is_received = transmission.direction is Direction.TO_CONTROLLER
-        spans = (transmission.link, transmission.driver) if is_received else (transmission.link,)
+        spans = (transmission.link, self.system.in_driver(transmission)) if is_received else (transmission.link,)
         variations = [None if span.most is None else span.most - span.least for span in spans]
         if None in variations:
             raise UnknownError(f"how long {process!r} takes besides the wire is not stated")
