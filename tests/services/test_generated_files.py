@@ -388,7 +388,7 @@ KEPT_BACK = USB.replace("    order: ", "    trigger: all\n    order: ")
     ("text", "number", "why"),
     [
         # A publication that waits keeps rounds from taking messages, which come every 50 ms with jitter.
-        (USB, 3, "as many as the analysis finds"),
+        (USB, 5, "as many as the analysis finds"),
         # Nothing is taken while the trigger is false: as many as a best-effort history keeps.
         (KEPT_BACK, 5, "all that are kept for On_Cmd_Vel, whose response time has no bound"),
         (KEPT_BACK.replace("topic: cmd_vel,", "topic: cmd_vel, depth: 7,"), 7, "all that are kept for On_Cmd_Vel"),
@@ -445,4 +445,4 @@ def test_a_number_without_an_analysis_is_a_lower_bound(tmp_path):
 
 def test_a_report_has_the_file_that_is_generated(tmp_path):
     content = compile_report(with_slots(USB, 4, tmp_path), with_simulation=False)
-    assert slots(texts_of(content.assembly)["colcon.meta"]) == 3
+    assert slots(texts_of(content.assembly)["colcon.meta"]) == 5
