@@ -206,12 +206,27 @@ def _longest(suspensions: list[Suspension]) -> list[Suspension]:
 
 
 def session_wait(executor: Executor, system: System, sending: Mapping[str, Span], writes: ProtocolWrites) -> Time | None:
-    """How long the other executors of its session can keep it from an executor that asks for it; None if that is not known."""
+    """How long the other executors of its session can keep it from an executor that asks for it; None if that is not known.
+
+    Operating systems give a mutex to the waiting thread of the highest priority. One other thread that precedes has to ask again after
+    it has had it, and comes later; two of them can hand it to each other without end.
+    """
+    others = other_threads(executor, system.executors) if executor.session is not None else ()
+    preceding = [other for other in others if _precedes(other, executor, system)]
+    if len({other.name if other.place is None else other.place.thread for other in preceding}) > 1:
+        return None
     total: Time = 0
-    for other in other_threads(executor, system.executors) if executor.session is not None else ():
+    for other in others:
         reading = writing_in_wait(other, system, sending, writes).most
         publishing = [suspension_of(handle, system, sending, 0).most for handle in other.handles]
         if reading is None or None in publishing:
             return None
         total += max(longest_wait(other) + reading, *filter(None, publishing), 0)
     return total
+
+
+def _precedes(one: Executor, other: Executor, system: System) -> bool:
+    """Whether the thread of an executor may get a mutex for which that of another one waits, too."""
+    priorities = {each.task: each.priority for each in system.mapping.tasks}
+    first, second = priorities.get(one.task), priorities.get(other.task)
+    return first is None or second is None or first >= second
