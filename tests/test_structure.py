@@ -30,7 +30,7 @@ LINES = {
     "difference": 790,
     "editor": 656,
     "errors": 17,
-    "executors": 2221,
+    "executors": 2224,
     "findings": 535,
     "inchron": 532,
     "inchron_bridge": 3342,

@@ -59,7 +59,7 @@ def test_the_page_lists_what_differs():
     assert sorted(rows) == sorted(row for row, _ in CHANGED.values())
 
 
-#: A runnable with a condition, which executes and then lets others run.
+#: A runnable with a condition and a schedule point.
 CONDITIONED = """\
 <swModel>
   <runnables name="R">

@@ -212,8 +212,7 @@ def session_wait(executor: Executor, system: System, sending: Mapping[str, Span]
     it has had it, and comes later; two of them can hand it to each other without end.
     """
     others = other_threads(executor, system.executors) if executor.session is not None else ()
-    preceding = [other for other in others if _precedes(other, executor, system)]
-    if len({other.name if other.place is None else other.place.thread for other in preceding}) > 1:
+    if len(_preceding_threads(executor, others, system)) > 1:
         return None
     total: Time = 0
     for other in others:
@@ -225,8 +224,12 @@ def session_wait(executor: Executor, system: System, sending: Mapping[str, Span]
     return total
 
 
-def _precedes(one: Executor, other: Executor, system: System) -> bool:
-    """Whether the thread of an executor may get a mutex for which that of another one waits, too."""
+def _preceding_threads(executor: Executor, others: Sequence[Executor], system: System) -> set[str]:
+    """The threads of other executors that may get a mutex for which that of an executor waits, too; of unknown priority, all may."""
     priorities = {each.task: each.priority for each in system.mapping.tasks}
-    first, second = priorities.get(one.task), priorities.get(other.task)
-    return first is None or second is None or first >= second
+    own, found = priorities.get(executor.task), set[str]()
+    for other in others:
+        priority = priorities.get(other.task)
+        if own is None or priority is None or priority >= own:
+            found.add(other.name if other.place is None else other.place.thread)
+    return found
