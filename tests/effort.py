@@ -44,7 +44,8 @@ def sample(items: Iterable[Any]) -> Iterator[Any]:
 
 
 def _name(item: Any) -> Hashable:
-    return item.path, getattr(item, "originalname", item.name)
+    # Relative, so that the sample is the same wherever the project is.
+    return str(item.path.relative_to(item.config.rootpath)), getattr(item, "originalname", item.name)
 
 
 def _is_published(item: Any) -> bool:
