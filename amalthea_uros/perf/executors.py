@@ -57,6 +57,8 @@ class HandleKind(StrEnum):
     ACTION_CLIENT = "action client"
     PARAMETER_SERVICE = "parameter service"
     LIFECYCLE_SERVICE = "lifecycle service"
+    #: What a loop does itself, in every iteration: it publishes, or asks the agent for something.
+    LOOP_ITEM = "loop item"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,9 +68,11 @@ class Publication(Brief):
     Attributes
     ----------
     transmission : what it is on the wire; None if no wire is described
-    acknowledgement : the transmission that acknowledges it; None if nothing does
+    reliable : whether it is sent again until it is acknowledged
+    acknowledgement : the transmission that acknowledges or answers it; None if nothing does
     waits : whether the callback waits for the acknowledgement
     timeout : after which it no longer waits; None if it does not wait at all
+    attempts : how often it is sent at most until it is answered, within the timeout
     """
 
     topic: str
@@ -77,6 +81,7 @@ class Publication(Brief):
     acknowledgement: str | None = None
     waits: bool = False
     timeout: Time | None = None
+    attempts: int = 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -189,7 +194,6 @@ class Executor(Named):
     poll : the runnable that stands for iterations without a callback, from the end of a wait until a timer is due; None for none
     busy_wait : the runnable in which its thread waits without sleeping, after each iteration; None for none
     place : in the loop of a thread that several executors share, whose `loop` then has all sleeps of the thread; None if it has its own
-    unknown : what its thread does besides, so that nobody knows how long the loop takes; "" for nothing
     handles : in the order in which they were added, which is that in which callbacks are called
     takes_first : whether all messages of an iteration are taken before the first callback (LET semantics)
     session : executors with the same one, of a middleware for several threads, exclude each other while they wait or send
@@ -206,4 +210,3 @@ class Executor(Named):
     poll: str | None = None
     busy_wait: str | None = None
     place: ThreadPlace | None = None
-    unknown: str = ""

@@ -6,9 +6,11 @@ from typing import Annotated, Self
 
 from amalthea_uros.spec.fields import Limits, examines
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
-from amalthea_uros.spec.values import Duration, Name, Offset, problem
+from amalthea_uros.spec.values import Count, Duration, Name, Offset, problem
 
 _SPINS = ("spin_some", "spin_period", "spin", "items")
+#: Keys of an item that say more of what it is.
+_BESIDE = ("executor", "attempts", "every")
 
 
 class LoopItem(DescriptionSection):
@@ -23,20 +25,28 @@ class LoopItem(DescriptionSection):
     busy_wait: Offset | None = None
     """Time that the thread waits without sleeping, as in `HAL_Delay`: nothing of lower priority executes meanwhile."""
     publish: Annotated[list[Name], Limits(min_length=1)] | None = None
-    """Topics on which it publishes outside of callbacks; how long the loop takes is then unknown."""
+    """Topics on which it publishes outside of callbacks, each at most once in an iteration."""
     ping: Offset | None = None
-    """Timeout of `rmw_uros_ping_agent`; how long the loop takes is then unknown."""
+    """Timeout of each attempt of `rmw_uros_ping_agent`."""
+    attempts: Count | None = None
+    """Attempts of `rmw_uros_ping_agent`; default: 1."""
     sync: Offset | None = None
-    """Timeout of `rmw_uros_sync_session`; how long the loop takes is then unknown."""
+    """Timeout of `rmw_uros_sync_session`."""
+    every: Duration | None = None
+    """Least time between two times that it publishes, pings or synchronises; default: in every iteration."""
 
     @examines
     def _is_one_item(self) -> Self:
-        keys = [key for key in type(self).model_fields if key != "executor"]
+        keys = [key for key in type(self).model_fields if key not in _BESIDE]
         stated = [key for key in keys if getattr(self, key) is not None]
         if len(stated) != 1:
             raise problem(f"expected one of {', '.join(map(repr, keys))}, found {' and '.join(map(repr, stated)) or 'none'}")
         if self.executor is not None and self.spin_some is None:
             raise problem("'executor' has no effect without 'spin_some'")
+        if self.attempts is not None and self.ping is None:
+            raise problem("'attempts' has no effect without 'ping'")
+        if self.every is not None and not self.uses_agent:
+            raise problem("'every' has no effect without 'publish', 'ping' or 'sync'")
         return self
 
     @property

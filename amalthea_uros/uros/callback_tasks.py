@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter, InterProcess
@@ -22,9 +23,15 @@ from amalthea_uros.uros.assembly.executor_runnables import (
     own_task_calls,
 )
 from amalthea_uros.uros.assembly.planned import PlannedTask, activity_sequence, trigger_name
-from amalthea_uros.uros.executors.add import add_looping_executor, add_sending_thread
+from amalthea_uros.uros.executors.add import add_looping_executor
 from amalthea_uros.uros.executors.checks import check_order, check_threads
-from amalthea_uros.uros.executors.threads import check_threads_of_loops, in_thread_order, thread_items, threads_of
+from amalthea_uros.uros.executors.threads import (
+    check_threads_of_loops,
+    executors_of_loops,
+    in_thread_order,
+    thread_items,
+    threads_of,
+)
 from amalthea_uros.uros.periods import (
     PeriodChoice,
     check_callbacks_in_executor,
@@ -41,15 +48,13 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
     middleware = context.description.middleware
     executors = middleware.stated_executors
     check_threads_of_loops(middleware, context.notes)
-    by_name = {executor.name: executor for executor in executors}
+    by_name = executors_of_loops(middleware)
     for executor in map(by_name.__getitem__, in_thread_order(tuple(by_name), middleware)):
         own = [callback for callback in callbacks if callback.executor == executor.name]
         inside = [callback for callback in own if callback.in_executor]
         ordered = registration_order(inside if executor.loop is None else own, executor, context.notes)
         check_order(executor, context.notes)
-        if executor.loop is not None and executor.loop.only_sends and not own:
-            add_sending_thread(context, executor)
-        elif not own and (executor.loop is not None or len(executors) > 1):
+        if not own and (executor.loop is not None or len(executors) > 1):
             advice = f"Set 'runs_in: {executor.name}' at callbacks or nodes, or remove the executor."
             context.notes.error("APP003", f"the executor {executor.name!r} serves no callback", executor.location(), advice)
         elif executor.loop is not None:
@@ -86,7 +91,11 @@ def _add_looping(
     bodies = {callback.name: _body(context, callback, core) for callback in callbacks}
     outside = [callback for callback in callbacks if not callback.in_executor]
     triggered = {callback.name: (callback.name,) for callback in outside if callback.section.task_period is None}
-    is_alone = len(context.description.middleware.stated_executors) == 1 and not any(each.outgoing for each in outside)
+    is_alone = (
+        len(context.description.middleware.stated_executors) == 1
+        and not any(each.outgoing for each in outside)
+        and not any(map(_reads_itself, of_thread))
+    )
     add_looping_executor(context, executor, callbacks, bodies, triggered, is_alone, of_thread)
     for callback in outside:
         if callback.name in triggered:
@@ -97,6 +106,12 @@ def _add_looping(
             if choice is not None:
                 _add_own_task(context, callback, choice.period, bodies[callback.name])
                 yield choice
+
+
+def _reads_itself(callback: Callback) -> bool:
+    """Whether a loop reads messages while it waits for an answer to what it sends outside of callbacks."""
+    is_answered = any(message.reliable or message.timeout is not None for message in callback.outgoing)
+    return callback.kind is HandleKind.LOOP_ITEM and is_answered
 
 
 def _add_periodic(

@@ -13,6 +13,7 @@ from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.background_tasks import add_background_tasks
 from amalthea_uros.uros.callback_tasks import add_callbacks
 from amalthea_uros.uros.executors.activation import is_triggered, iteration_trigger_name
+from amalthea_uros.uros.executors.loop_items import loop_callbacks
 from amalthea_uros.uros.executors.sleeps import check_sleeps
 from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.middleware.checks import check_middleware
@@ -71,7 +72,8 @@ def add_processes(context: AssemblyContext, options: Sequence[Option], database:
     """
     description, notes = context.description, context.notes
     middleware = description.middleware
-    callbacks = callbacks_of(description.application, middleware, notes)
+    own = callbacks_of(description.application, middleware, notes)
+    callbacks = (*own, *loop_callbacks(description, context.profile, notes))
     messages = bus_messages(callbacks, context.profile)
     check_identifiers(messages, middleware.transport, notes)
     check_options(options, middleware, notes)

@@ -133,6 +133,12 @@ def times_out(publication: Publication, sending: Mapping[str, Span]) -> bool:
     return not publication.waits or most is None or publication.timeout is None or most > publication.timeout
 
 
+def asks_again(publication: Publication, sending: Mapping[str, Span]) -> bool:
+    """Whether what a question waits for can come later than its first attempt ends."""
+    most, once = sending.get(publication.transmission or "", Span()).most, (publication.timeout or 0) // publication.attempts
+    return most is None or most > once
+
+
 def has_unacknowledged(sending: Mapping[str, Span], solved: SolvedSystem) -> bool:
     """Whether something can be sent and not be acknowledged when an iteration or a publication begins."""
     return any(each.reliable and times_out(each, sending) for each in publications(solved.context.system))

@@ -52,7 +52,6 @@ from amalthea_uros.executors.semantics.readiness import (
     takes_one_message,
     thread_of,
     timers,
-    why_unknown,
 )
 from amalthea_uros.executors.semantics.suspension import (
     NONE,
@@ -122,9 +121,6 @@ class Cycle:
         ------
         UnknownError : its execution demand, what can preempt it, or what else is done in the loop is unknown.
         """
-        reason = why_unknown(executor, solved.context.system.executors)
-        if reason:
-            raise UnknownError(reason)
         processor = solved.processor(executor.task)
         demand = IterationDemand.of(executor, solved.context)
         takes_one = takes_one_message(executor, solved.context.system.executors)

@@ -6,6 +6,7 @@ callback.
 - A timer: once it is due, waits end at once. In the worst case what is ready was fixed just before, so that it is called after one
   cycle: L + E. That a wait can end up to 1 ms before the timer is due, without a call, is no longer than that.
 - A guard condition: a trigger does not end the wait, so that it is seen after one cycle and the wait: L + W + E.
+- What a loop does itself: nothing releases it, so that its time counts from the beginning of its iteration: E.
 - A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the iteration that takes them, or
   what `storage` has for that.
 """
@@ -54,6 +55,8 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
     if stored is not None:
         ready = stored.most
     start, end = cycle.until_start(handle), cycle.until_end(handle)
+    if handle.kind is HandleKind.LOOP_ITEM:
+        ready = 0
     worst = None if ready is None or end is None else ready + end
     lateness = None
     if handle.kind is HandleKind.TIMER:

@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.bounds.backlog import Arriving, acknowledged, times_out
+from amalthea_uros.executors.bounds.backlog import Arriving, acknowledged, asks_again, times_out
 from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.evaluate import handle_result
 from amalthea_uros.executors.bounds.publications import sending_times
@@ -95,6 +95,8 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
 def _published(publication: Publication, calls: EventModel | None, cycle: Cycle) -> Mapping[str, EventModel | None]:
     """The messages of some calls, and their acknowledgements if nothing else is known of these, by the names of transmissions."""
     system, acknowledgement = cycle.solved.context.system, publication.acknowledgement or ""
+    if calls is not None and publication.attempts > 1 and asks_again(publication, cycle.sending):
+        calls = Multiplied(calls, publication.attempts)
     sent = {publication.transmission or "": calls}
     if calls is None or times_out(publication, cycle.sending) or acknowledgement not in system.transmissions:
         return sent
@@ -166,6 +168,8 @@ def _shortest_write(publication: Publication, solved: SolvedSystem) -> Time:
 
 def _made_ready(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> PeriodicEvents | None:
     """The events of which each leads to one call of a handle; None if they are unknown."""
+    if handle.kind is HandleKind.LOOP_ITEM:
+        return SporadicEvents(handle.interval) if handle.interval else None
     if handle.always or handle.sources > 1:
         return None
     try:

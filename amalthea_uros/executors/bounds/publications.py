@@ -117,9 +117,11 @@ def _until_acknowledged(
     least = sum(hop.best for hop in hops)
     times = [hop.worst for hop in hops]
     known = None if not hops or None in times or _can_lose(publication, solved) else sum(filter(None, times))
-    most = _lesser(
-        None if known is None else _with_writes(known, session, arrivals, solved), _until_timeout(publication, solved)
-    )
+    whole = None if known is None else _with_writes(known, session, arrivals, solved)
+    if whole is not None and publication.attempts > 1 and whole > (publication.timeout or 0) // publication.attempts:
+        # Further attempts are written before the answer to the first one comes.
+        whole = None
+    most = _lesser(whole, _until_timeout(publication, solved))
     if publication.timeout is not None:
         # Its timeout can pass while the driver still has the message.
         least = min(least, publication.timeout)
@@ -190,7 +192,9 @@ def _until_timeout(publication: Publication, solved: SolvedSystem) -> Time | Non
     if publication.timeout is None or written is None or None in writes:
         return None
     beats_time = _heartbeat_time(publication.timeout, DUE, solved)
-    return None if beats_time is None else written + publication.timeout + max(filter(None, writes), default=0) + beats_time
+    if beats_time is None:
+        return None
+    return publication.attempts * written + publication.timeout + max(filter(None, writes), default=0) + beats_time
 
 
 def _round_trip(publication: Publication, solved: SolvedSystem) -> Iterator[Hop]:

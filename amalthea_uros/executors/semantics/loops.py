@@ -101,9 +101,7 @@ def busy_polls(executor: Executor) -> str:
 
 def timing_context(system: System, settings: Settings | None = None) -> TimingContext:
     """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again."""
-    polling = {
-        executor.task: reason for executor in system.executors if (reason := executor.unknown or _busy_thread(executor, system))
-    }
+    polling = {executor.task: reason for executor in system.executors if (reason := _busy_thread(executor, system))}
     return TimingContext.of(system, settings, unknown_demands=polling | _sent_again(system))
 
 

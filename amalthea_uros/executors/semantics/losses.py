@@ -27,6 +27,11 @@ def publications(system: System) -> list[Publication]:
     return [each for executor in system.executors for handle in executor.handles for each in handle.publications]
 
 
+def is_question(message: Transmission, system: System) -> bool:
+    """Whether a message asks for something: its sender waits for an answer, which nobody sends again."""
+    return any(each.transmission == message.name and each.waits and not each.reliable for each in publications(system))
+
+
 def acknowledged_from_controller(wire: str, system: System) -> list[Transmission]:
     """The messages from the controller on a wire that the agent acknowledges."""
     return [each for each in _data(wire, Direction.TO_AGENT, system) if _acknowledgement(each, system) is not None]
@@ -70,6 +75,8 @@ def why_unbounded(wire: Wire, system: System) -> str:
         return "more than one thread sends messages, or not each of them is a publication of an executor"
     if any(not published[each.name].waits for each in sent):
         return "not each reliable message is a publication that waits"
+    if any(each.waits and not each.reliable for each in published.values()):
+        return "a ping or a time synchronisation waits for an answer that is not sent again"
     if any(publication.timeout is None for publication in published.values() if publication.waits):
         return "a publication waits without a timeout"
     if any(parts(reply, system) > 1 for each in sent if (reply := _acknowledgement(each, system)) is not None):

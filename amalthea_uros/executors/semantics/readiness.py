@@ -25,8 +25,8 @@ LIFESPAN = 30 * SECOND
 
 
 def is_message(handle: Handle) -> bool:
-    """Whether a handle receives messages: all do but timers and guard conditions."""
-    return handle.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION)
+    """Whether a handle receives messages: all do but timers, guard conditions, and what a loop does itself."""
+    return handle.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION, HandleKind.LOOP_ITEM)
 
 
 def timers(executor: Executor) -> tuple[Handle, ...]:
@@ -55,7 +55,9 @@ def reads_in_waits(executor: Executor) -> bool:
 
 def has_backlog(executor: Executor, executors: Sequence[Executor]) -> bool:
     """Whether messages can be stored before an iteration that takes them: see `takes_one_message`."""
-    return can_defer(executor) or len(sharing(executor, executors)) > 1 or waits_for_acknowledgements(executor)
+    others = [each for each in sharing(executor, executors) if each.name != executor.name]
+    can_store = map(waits_for_acknowledgements, (executor, *others))
+    return can_defer(executor) or any(can_store) or any(map(reads_in_waits, others))
 
 
 def waits_for_acknowledgements(executor: Executor) -> bool:
@@ -103,14 +105,6 @@ def thread_of(executor: Executor, executors: Sequence[Executor]) -> list[Executo
 def others_of_thread(executor: Executor, executors: Sequence[Executor]) -> list[Executor]:
     """The other executors that spin in the same thread."""
     return [each for each in thread_of(executor, executors) if each.name != executor.name]
-
-
-def why_unknown(executor: Executor, executors: Iterable[Executor]) -> str:
-    """Why the time of the loop of an executor is unknown; "" if it is not.
-
-    A publication outside of callbacks, or a ping, uses the session and its buffers, which delays all executors that share them.
-    """
-    return next((each.unknown for each in sharing(executor, executors) if each.unknown), "")
 
 
 def independent_handles(executor: Executor) -> tuple[Handle, ...]:

@@ -97,6 +97,9 @@ def suspension_of(handle: Handle, system: System, sending: Mapping[str, Span], s
 def _of(publication: Publication, system: System, sending: Mapping[str, Span], session_wait: Time | None) -> Suspension:
     stated = sending.get(publication.transmission or "")
     span = stated or _unstated(publication, system)
+    if publication.waits and not publication.reliable:
+        # The answer to an earlier question, which came too late for it, is one to this question, too.
+        span = Span(most=span.most)
     if stated is not None and stated.most is None:
         why = _unbounded(publication)
     elif span.most is None and publication.waits:

@@ -38,6 +38,7 @@ def expect(m: Memory, executor: int, publication: int) -> None:
     """Begin to wait for the acknowledgements of a publication."""
     m[executor + WAIT_END] = m[NOW] + m[publication + TIMEOUT_AFTER]
     m[executor + AWAITED] = publication
+    m[publication + IS_ANSWERED] = 0
 
 
 def begin_iteration(m: Memory, process: int) -> None:
@@ -57,7 +58,7 @@ def check(m: Memory, executor: int) -> None:
     m[executor + IS_TRIGGERED] = 0
     for place in range(m[executor + HANDLES], m[executor + HANDLES_END]):
         handle = m[place]
-        if m[handle + HANDLE_KIND] == TIMER:
+        if m[handle + HANDLE_KIND] == TIMER or m[handle + HANDLE_KIND] == ITEM:
             m[handle + IS_READY] = 1 if m[handle + NEXT_CALL] <= m[NOW] else 0
         else:
             m[handle + IS_READY] = 1 if m[handle + KEPT_NUMBER] else 0
@@ -87,6 +88,10 @@ def take_data(m: Memory, handle: int) -> None:
         m[handle + RELEASED] = due
         m[handle + LOST_CALLS] += skipped
         m[handle + NEXT_CALL] = due + (skipped + 1) * period
+    elif m[handle + HANDLE_KIND] == ITEM:
+        # Nothing releases it but its turn.
+        m[handle + RELEASED] = m[NOW]
+        m[handle + NEXT_CALL] = m[NOW] + m[handle + TIMER_PERIOD]
     elif m[handle + HANDLE_KIND] == RECEIVER:
         message = pop(m, handle + KEPT_FIRST)
         m[handle + KEPT_NUMBER] -= 1

@@ -132,7 +132,7 @@ DELAY_IN, LAST_AT_HOST, TRANSMISSION_SIZE = range(27, 30)
 UNREAD_FIRST, UNREAD_LAST, KEPT, SLOTS, INBOX_SIZE = range(5)
 
 # A publication: its timeout, how often that passed; whether there was no room for the message, and how often.
-TIMEOUT_AFTER, TIMEOUTS, IS_REFUSED, REFUSALS, PUBLICATION_SIZE = range(5)
+TIMEOUT_AFTER, TIMEOUTS, IS_REFUSED, REFUSALS, ANSWERED_BY, IS_ANSWERED, PUBLICATION_SIZE = range(7)
 
 # What an executor reads and waits with: its process, the messages, the timeout of its wait, and to what it is cut.
 READER_PROCESS, INBOX, WAIT_TIMEOUT, RESOLUTION, MESSAGES_PER_WAIT, KEPT_END_WAIT, FLAGS_END_WAIT = range(7)
@@ -159,12 +159,13 @@ READY_SET, FIRST_READY, EVENT_QUEUE = range(3)
 # A publication of the host: its line, and values that the message carries: (place, index).
 PUBLISHES_ON, PUBLISHED_STAMPS, PUBLISHED_STAMPS_END, HOST_PUBLICATION_SIZE = range(4)
 
-# A handle: a timer is due at a time and every period; of the others, messages are kept, or a flag was set at a time.
+# A handle: a timer is due at a time and every period, an item of a loop a period after its last call at the earliest; of the others,
+# messages are kept, or a flag was set at a time.
 HANDLE_KIND, NEXT_CALL, TIMER_PERIOD, KEPT_FIRST, KEPT_LAST, KEPT_NUMBER, DEPTH, OVERWRITES = range(8)
 IS_ALWAYS_CALLED, IS_READY, RELEASED, LOST_CALLS, CALLS, HANDLE_STAMPS, HANDLE_STAMPS_END = range(8, 15)
 # On the host: its executor, its place among the callbacks, and a word that is 1 while its group executes (0: no group matters).
 HANDLE_OF, HANDLE_INDEX, ITS_GROUP, HANDLE_SIZE = range(15, 19)
-TIMER, RECEIVER, FLAG = range(3)
+TIMER, RECEIVER, FLAG, ITEM = range(4)
 
 # A condition: alternatives, each of comparisons.
 ALTERNATIVES, ALTERNATIVES_END, CONDITION_SIZE = range(3)

@@ -67,6 +67,8 @@ def read(m: Memory, core: int, process: int, executor: int) -> int:
 
 def _has_what_it_waits_for(m: Memory, executor: int) -> bool:
     awaited, flow = m[executor + AWAITED], m[executor + OUT_FLOW]
+    if awaited and m[awaited + ANSWERED_BY]:
+        return m[awaited + IS_ANSWERED] != 0
     if awaited:
         # Everything has to be acknowledged, also what was sent before (`uxr_run_session_until_confirm_delivery`).
         return m[awaited + IS_REFUSED] != 0 or flow == 0 or m[flow + UNACKNOWLEDGED] >= m[flow + NEXT_PART]
@@ -116,7 +118,7 @@ def _is_woken(m: Memory, executor: int) -> bool:
 
 def _read_message(m: Memory, executor: int, message: int) -> int:
     """Read the first message of the inbox; the result is a reason to stop and call again, or 0."""
-    transmission = m[message + SENT_AS]
+    transmission, awaited = m[message + SENT_AS], m[executor + AWAITED]
     handle, inbox, flow = m[transmission + FOR_HANDLE], m[executor + INBOX], m[message + ABOUT]
     if handle and m[message + ORIGINAL]:
         flow = m[transmission + FLOW]
@@ -126,6 +128,8 @@ def _read_message(m: Memory, executor: int, message: int) -> int:
         if code:
             return code
     pop(m, inbox + UNREAD_FIRST)
+    if awaited and m[awaited + ANSWERED_BY] == transmission:
+        m[awaited + IS_ANSWERED] = 1
     m[executor + REPLY_AS] = m[transmission + REPLY_WITH]
     m[executor + REPLIES_LEFT] = m[transmission + REPLIES]
     m[executor + REPLY_ABOUT] = flow

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
-from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of, why_unknown
+from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of
 from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
@@ -121,8 +121,10 @@ class ExecutorRecords:
         """The record of a publication of a callback."""
         key = (executor, handle.name, publication.topic)
         if key not in self._publications:
+            is_question = publication.waits and not publication.reliable
             fields = {
                 layout.TIMEOUT_AFTER: self.resources.time(layout.NEVER if publication.timeout is None else publication.timeout),
+                layout.ANSWERED_BY: self.messages.transmissions[publication.acknowledgement or ""] if is_question else 0,
             }
             self._publications[key] = self.resources.image.record(layout.PUBLICATION_SIZE, fields)
         return self._publications[key]
@@ -238,9 +240,6 @@ class IterationCompiler:
         code.add(layout.PLAN_ITERATION, self.record)
 
     def _check(self) -> None:
-        reason = why_unknown(self.executor, self.body.context.system.executors)
-        if reason:
-            raise UnknownError(reason)
         for other in thread_of(self.executor, self.body.context.system.executors):
             if other.task not in self.body.resources.processes:
                 raise UnknownError(f"{other.name!r}, which spins in the same loop, is not simulated")
@@ -253,6 +252,8 @@ class IterationCompiler:
 
     def _check_arrivals(self, handle: Handle) -> None:
         """Refuse a handle of which it is unknown when it becomes ready: without its calls, others would be too early."""
+        if handle.kind is HandleKind.LOOP_ITEM:
+            return
         if handle.kind is HandleKind.TIMER:
             if handle.interval is None:
                 raise UnknownError(f"the period of the timer {handle.name!r} is not specified")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.executors.semantics.callbacks import taker
-from amalthea_uros.executors.semantics.losses import losses_text
+from amalthea_uros.executors.semantics.losses import is_question, losses_text
 from amalthea_uros.executors.semantics.message_parts import parts
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.network import BILLION, Direction, Losses, Purpose, Transmission, Wire
@@ -71,7 +71,7 @@ class FlowRecords:
         is_received = transmission.direction is Direction.TO_CONTROLLER
         ready = taker(transmission, system)
         executor = messages.sender(transmission) if not is_received else None if ready is None else ready[0]
-        if reply is None or executor is None or reply.name not in messages.transmissions:
+        if reply is None or executor is None or reply.name not in messages.transmissions or is_question(transmission, system):
             return
         record = messages.transmissions[transmission.name]
         fields = {

@@ -30,6 +30,8 @@ from amalthea_uros.units import Time
 #: Assumptions.
 _HOST = "the host is not simulated: its messages come at the interval and with the jitter that the controller states"
 _AT_ONCE = Span(most=0)
+#: What is no receiver of messages.
+_KINDS = {HandleKind.TIMER: layout.TIMER, HandleKind.GUARD_CONDITION: layout.FLAG, HandleKind.LOOP_ITEM: layout.ITEM}
 
 
 @dataclass(slots=True)
@@ -119,7 +121,7 @@ class MessageRecords:
             assume(f"{_HOST}: {why}" if (why := why_not_simulated(self.system)) else _HOST)
 
     def _handle(self, executor: Executor, handle: Handle) -> int:
-        kind = {HandleKind.TIMER: layout.TIMER, HandleKind.GUARD_CONDITION: layout.FLAG}.get(handle.kind, layout.RECEIVER)
+        kind = _KINDS.get(handle.kind, layout.RECEIVER)
         fields = {
             layout.HANDLE_KIND: kind,
             layout.DEPTH: layout.NEVER if handle.depth is None else handle.depth,
@@ -127,6 +129,8 @@ class MessageRecords:
             layout.IS_ALWAYS_CALLED: int(handle.always),
             layout.RELEASED: -1,
         }
+        if kind == layout.ITEM:
+            fields[layout.TIMER_PERIOD] = self.resources.time(handle.interval or 0)
         if kind == layout.TIMER and handle.interval is not None:
             fields[layout.TIMER_PERIOD] = self.resources.time(handle.interval)
             fields[layout.NEXT_CALL] = self.resources.time(self._phase(handle, handle.interval, first=handle.interval))

@@ -34,10 +34,16 @@ class MessageKind(StrEnum):
     REQUEST_IN = "request to a service here"
     RESPONSE_OUT = "response of a service here"
     RESPONSE_IN = "response of a service elsewhere"
+    PING = "ping of the agent"
+    SYNC = "time synchronisation with the agent"
 
 
 #: What the controller sends.
-SENT = frozenset({MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT})
+SENT = frozenset(
+    {MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT, MessageKind.PING, MessageKind.SYNC}
+)
+#: What the agent answers itself, without acknowledging it.
+ASKING = frozenset({MessageKind.PING, MessageKind.SYNC})
 #: What the names of the channels of messages end with.
 _CHANNELS = {
     MessageKind.PUBLICATION: "topic",
@@ -46,6 +52,8 @@ _CHANNELS = {
     MessageKind.REQUEST_IN: "request",
     MessageKind.RESPONSE_OUT: "response",
     MessageKind.RESPONSE_IN: "response",
+    MessageKind.PING: "request",
+    MessageKind.SYNC: "request",
 }
 
 
@@ -58,7 +66,9 @@ class Message:
     callback : the callback that receives or sends it
     topic : or the service, for requests and responses
     size : without headers
-    interval : minimum time between two messages
+    interval : minimum time between two messages; 0 if nothing keeps them apart, of what a loop without a sleep sends
+    attempts : how often it is sent at most until it is answered
+    timeout : after all of which nobody waits for the answer; None for the timeout of the middleware
     """
 
     callback: str
@@ -68,6 +78,8 @@ class Message:
     interval: Time
     reliable: bool
     origin: Location | None
+    attempts: int = 1
+    timeout: Time | None = None
 
     @property
     def direction(self) -> Direction:
@@ -131,6 +143,39 @@ def _publisher(topic: str, node: NodeSection, nodes: Sequence[NodeSection]) -> P
     return own or (others[0] if len(others) == 1 else None)
 
 
+def publication(
+    sender: str,
+    topic: str,
+    node: NodeSection,
+    nodes: Sequence[NodeSection],
+    interval: Time,
+    origin: Location | None,
+    notes: Notes,
+) -> Message | None:
+    """A message to a topic; None, with a finding, if nothing publishes there.
+
+    Parameters
+    ----------
+    sender : the callback
+    node : of the publisher; `nodes` has all others
+    origin : where the topic is named
+    """
+    publisher = _publisher(topic, node, nodes)
+    if publisher is None:
+        topics = [publisher.topic for each in nodes for publisher in each.publishers]
+        notes.undefined("publisher", topic, topics, origin, owner=f"node {node.name!r}")
+        return None
+    return Message(
+        callback=sender,
+        topic=topic,
+        kind=MessageKind.PUBLICATION,
+        size=publisher.message_size,
+        interval=interval,
+        reliable=publisher.reliability == "reliable",
+        origin=publisher.location(),
+    )
+
+
 def outgoing_messages(
     section: CallbackSection, node: NodeSection, nodes: Sequence[NodeSection], interval: Time, notes: Notes
 ) -> Iterator[Message]:
@@ -143,20 +188,14 @@ def outgoing_messages(
     nodes : of the application; a callback can publish with a publisher of another node than its own
     """
 
-    def message(kind: MessageKind, topic: str, size: DataSize, origin: Location | None, *, reliable: bool = True) -> Message:
-        return Message(
-            callback=section.name, topic=topic, kind=kind, size=size, interval=interval, reliable=reliable, origin=origin
-        )
+    def message(kind: MessageKind, topic: str, size: DataSize, origin: Location | None) -> Message:
+        return Message(callback=section.name, topic=topic, kind=kind, size=size, interval=interval, reliable=True, origin=origin)
 
     owner = f"node {node.name!r}"
     for index, topic in enumerate(section.publishes):
-        publisher = _publisher(topic, node, nodes)
-        if publisher is None:
-            topics = [publisher.topic for each in nodes for publisher in each.publishers]
-            notes.undefined("publisher", topic, topics, section.location("publishes", index), owner=owner)
-        else:
-            is_reliable = publisher.reliability == "reliable"
-            yield message(MessageKind.PUBLICATION, topic, publisher.message_size, publisher.location(), reliable=is_reliable)
+        found = publication(section.name, topic, node, nodes, interval, section.location("publishes", index), notes)
+        if found is not None:
+            yield found
     every: Sequence[Client | ActionClient] = [*node.clients, *node.action_clients]
     clients = {client.name: client for client in every}
     for index, name in enumerate(section.requests):

@@ -137,11 +137,15 @@ class DemandConverter:
     ) -> tuple[Execute, ...]:
         """Computation that consists of parts: the sum of all constant ones first, then the others one by one.
 
+        What a loop does itself can be stated to take no time, which is not unknown.
+
         Parameters
         ----------
         location : of findings about the sum
         """
         constant: Time = 0
+        parts = tuple(parts)
+        is_stated = any(isinstance(part, ExecutionTimeSection) for part in parts)
         varying: list[Demand] = []
         for part in parts:
             if part is None:
@@ -157,5 +161,6 @@ class DemandConverter:
                 if demand is not None:
                     varying.append(demand)
         self._check_rounding(constant, core, location)
-        fixed = [Demand(in_ticks(Constant(constant), self.controller.frequencies[core]))] if constant else []
+        has_fixed = constant or (is_stated and not varying)
+        fixed = [Demand(in_ticks(Constant(constant), self.controller.frequencies[core]))] if has_fixed else []
         return tuple(Execute(demand=demand) for demand in (*fixed, *varying))

@@ -9,7 +9,6 @@ from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, lowest
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind, ThreadLoop, WaitBehaviour
 from amalthea_uros.perf.software import Runnable
-from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.spec import executors as spec
 from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.os import OsSection
@@ -23,7 +22,7 @@ from amalthea_uros.uros.executors.checks import check_executor
 from amalthea_uros.uros.executors.handles import handle_names, handles_of, trigger_of
 from amalthea_uros.uros.executors.iterations import has_one_message_per_iteration, iteration_activities, polls_before_timers
 from amalthea_uros.uros.executors.sleeps import slept
-from amalthea_uros.uros.executors.threads import thread_items, why_unknown_time
+from amalthea_uros.uros.executors.threads import thread_items
 
 #: Iterations are executed one after the other, however many are due.
 _UNLIMITED = 1_000_000
@@ -77,27 +76,6 @@ def add_looping_executor(
     )
 
 
-def add_sending_thread(context: AssemblyContext, section: spec.ExecutorSection) -> None:
-    """Add the thread of a section in whose loop nothing spins: nobody knows how often and for how long it executes."""
-    stimulus = Custom(
-        name=f"rounds_of_{section.name}",
-        description=f"how often and how long {section.name!r} sends outside of callbacks is not specified",
-        origin=section.location(),
-    )
-    context.tasks.append(
-        PlannedTask(
-            name=section.name,
-            core=context.core(section.core, section.location("core")),
-            stimuli=(context.stimuli.add(stimulus),),
-            activities=(Execute(demand=Demand()),),
-            period=None,
-            priority=section.priority,
-            overhead=section.overhead,
-            origin=section.location(),
-        )
-    )
-
-
 def _executor(
     context: AssemblyContext,
     section: spec.ExecutorSection,
@@ -133,7 +111,6 @@ def _executor(
         waiting=waiting,
         session="session" if middleware.multithread else None,
         place=None if items is None else items.place(section.name, os),
-        unknown=why_unknown_time(section.name, middleware),
         origin=section.location(),
     )
 

@@ -1,18 +1,20 @@
-"""The loop of a thread as a list: which executors spin in it, what it sleeps and waits for, and what nobody knows the time of.
+"""The loop of a thread as a list: its stations, at which executors spin or the thread itself sends, and what it waits for between them.
 
 What each executor of a thread needs to know: the sleeps of the whole loop, which pace it; those between its spin and the next one; and
-what the thread waits for without sleeping there. A list that is rotated describes the same loop, so items before the first spin
-follow the last one.
+what the thread waits for without sleeping there. What the thread sends outside of callbacks is an executor, too: it waits for nothing
+and calls what it sends in every iteration. A list that is rotated describes the same loop, so items before the first station follow
+the last one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import LoopKind, ThreadLoop, ThreadPlace
-from amalthea_uros.spec.executors import ExecutorSection
+from amalthea_uros.spec.execution_time import ExecutionTimeSection
+from amalthea_uros.spec.executors import ExecutorCost, ExecutorSection, TriggerSection
 from amalthea_uros.spec.loops import LoopItem
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.os import OsSection
@@ -21,9 +23,27 @@ from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.executors.sleeps import slept
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Station:
+    """A place of a loop at which it waits or sends.
+
+    Attributes
+    ----------
+    name : of the executor that spins, or that stands for what is sent
+    timeout : of its wait
+    sent : what the thread sends itself; nothing where an executor spins
+    after : the sleeps and busy waits that follow
+    """
+
+    name: str
+    timeout: Time = 0
+    sent: tuple[LoopItem, ...] = ()
+    after: tuple[LoopItem, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class ThreadItems:
-    """The items of the loop of a thread, the spin of its first executor first.
+    """The items of the loop of a thread.
 
     Attributes
     ----------
@@ -34,26 +54,43 @@ class ThreadItems:
     items: tuple[LoopItem, ...]
 
     @property
-    def executors(self) -> tuple[str, ...]:
-        """The executors that spin in it, in order."""
-        return tuple(item.executor or self.owner for item in self.items if item.spin_some is not None)
+    def stations(self) -> tuple[Station, ...]:
+        """Its stations in order, that of its first executor first."""
+        begins = [item.spin_some is not None for item in self.items]
+        spins = any(begins)
+        first = (begins if spins else [item.uses_agent for item in self.items]).index(True)
+        found: list[Station] = []
+        for item in (*self.items[first:], *self.items[:first]):
+            if item.spin_some is not None:
+                found.append(Station(name=item.executor or self.owner, timeout=item.spin_some))
+            elif not item.uses_agent:
+                found[-1] = replace(found[-1], after=(*found[-1].after, item))
+            elif found and found[-1].sent and not found[-1].after:
+                found[-1] = replace(found[-1], sent=(*found[-1].sent, item))
+            else:
+                number = sum(bool(each.sent) for each in found) + spins
+                name = self.owner if not number else f"{self.owner}_sends" if number == 1 else f"{self.owner}_sends_{number}"
+                found.append(Station(name=name, sent=(item,)))
+        return tuple(found)
 
     @property
-    def unknown(self) -> str:
-        """Why the time of the loop is unknown; "" if it is not."""
-        sent = _sent_outside(self.items)
-        return f"its loop also {sent}, which takes an unknown time" if sent else ""
+    def executors(self) -> tuple[str, ...]:
+        """The executors of its stations, in order."""
+        return tuple(each.name for each in self.stations)
+
+    def pace(self, os: OsSection) -> Time:
+        """The least time between two passes of the loop: its sleeps, in the long run."""
+        return sum(slept(item.sleep, os).least for item in self.items if item.sleep)
 
     def loop(self, name: str, os: OsSection) -> ThreadLoop:
         """The loop as one of its executors has it: with all sleeps."""
-        spin = next(item for item in self.items if item.spin_some is not None and (item.executor or self.owner) == name)
         sleeps = [slept(item.sleep, os) for item in self.items if item.sleep]
         least, most = sum(each.least for each in sleeps), sum(each.most for each in sleeps)
         # Of several sleeps, only that each is at least its shortest one counts.
         pace = sleeps[0].pace if len(sleeps) == 1 else 0
         return ThreadLoop(
             kind=LoopKind.SLEEPING,
-            timeout=spin.spin_some or 0,
+            timeout=self._station(name).timeout,
             sleep=most,
             sleep_early=most - least,
             pace=pace if pace > least else 0,
@@ -61,46 +98,53 @@ class ThreadItems:
 
     def place(self, name: str, os: OsSection) -> ThreadPlace | None:
         """The place of one of its executors; None if it is the only one."""
-        if len(self.executors) < 2:
+        if len(self.stations) < 2:
             return None
-        sleeps = [slept(item.sleep, os) for item in self._after(name) if item.sleep]
+        sleeps = [slept(item.sleep, os) for item in self._station(name).after if item.sleep]
         most = sum(each.most for each in sleeps)
         return ThreadPlace(thread=self.owner, sleep=most, sleep_early=most - sum(each.least for each in sleeps))
 
     def busy_wait(self, name: str, os: OsSection) -> Boundaries[Time] | None:
         """The time that the thread waits busily after the spin of an executor; None if there is nothing."""
-        waits = [item.busy_wait for item in self._after(name) if item.busy_wait]
+        waits = [item.busy_wait for item in self._station(name).after if item.busy_wait]
         return Boundaries(lower=sum(waits), upper=sum(_latest(each, os) for each in waits)) if waits else None
 
-    def _after(self, name: str) -> Iterator[LoopItem]:
-        """The items between the spin of an executor and the next spin."""
-        spinning = self.executors[-1]
-        for item in self.items:
-            if item.spin_some is not None:
-                spinning = item.executor or self.owner
-            elif spinning == name:
-                yield item
+    def _station(self, name: str) -> Station:
+        return next(each for each in self.stations if each.name == name)
 
 
-def why_unknown_time(name: str, middleware: Middleware) -> str:
-    """Why the time of the loop of an executor is unknown: of what is sent outside of callbacks; "" if it is not."""
-    items = thread_items(name, middleware)
+def threads_with_items(middleware: Middleware) -> Iterator[ThreadItems]:
+    """The threads whose loops are lists."""
     for each in middleware.stated_executors:
-        if each.loop is not None and each.loop.only_sends:
-            return f"the thread {each.name!r} {_sent_outside(each.loop.items or ())}, which delays it for an unknown time"
-    return "" if items is None else items.unknown
+        items = each.loop.items if each.loop is not None else None
+        if items is not None:
+            yield ThreadItems(each.name, tuple(items))
 
 
-def _sent_outside(items: Iterable[LoopItem]) -> str:
-    return " and ".join(dict.fromkeys(text for item in items if (text := _unknown(item))))
+def executors_of_loops(middleware: Middleware) -> dict[str, ExecutorSection]:
+    """All executors by name: those that are stated, and those that stand for what loops send outside of callbacks."""
+    found = {each.name: each for each in middleware.stated_executors}
+    for thread in threads_with_items(middleware):
+        owner = found[thread.owner]
+        for station in thread.stations:
+            if station.sent:
+                found[station.name] = _sending(owner, station.name)
+    return found
 
 
-def _unknown(item: LoopItem) -> str:
-    if item.publish is not None:
-        return f"publishes {', '.join(item.publish)} outside of callbacks"
-    if item.ping is not None:
-        return "pings the agent"
-    return "synchronises its time with the agent" if item.sync is not None else ""
+def _sending(owner: ExecutorSection, name: str) -> ExecutorSection:
+    """What stands for messages that the thread of a section sends outside of callbacks: an executor that costs nothing itself."""
+    at_once = ExecutionTimeSection.model_construct(min=0, max=0)
+    kept = {
+        "name": name,
+        "execution_time": ExecutorCost.model_construct(base=at_once),
+        "trigger": TriggerSection.model_construct(when="always"),
+        "order": [],
+        "deadline": None,
+        "semantics": "ROS",
+        "max_handles": None,
+    }
+    return owner.model_copy(update=kept)
 
 
 def _latest(wait: Time, os: OsSection) -> Time:
@@ -109,14 +153,8 @@ def _latest(wait: Time, os: OsSection) -> Time:
 
 
 def thread_items(name: str, middleware: Middleware) -> ThreadItems | None:
-    """The items of the loop that an executor spins in; None if no list describes it."""
-    for each in middleware.stated_executors:
-        items = each.loop.items if each.loop is not None else None
-        if items is not None:
-            thread = ThreadItems(each.name, tuple(items))
-            if name in thread.executors:
-                return thread
-    return None
+    """The items of the loop that an executor is a station of; None if no list describes it."""
+    return next((each for each in threads_with_items(middleware) if name in each.executors), None)
 
 
 def in_thread_order(executors: Sequence[str], middleware: Middleware) -> list[str]:

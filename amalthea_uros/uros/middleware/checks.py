@@ -102,7 +102,8 @@ def _check_steps(sent: Iterable[Message], buffers: int, profile: Profile, notes:
 
 def _check_buffers(sent: Iterable[Message], history: int, acknowledgement: Time, profile: Profile, notes: Notes) -> None:
     """Report if the messages within an acknowledgement time need more buffers than there are."""
-    buffers = sum(_fragments(message, profile) * -(-acknowledgement // message.interval) for message in sent)
+    often = ((each, -(-acknowledgement // each.interval) if each.interval else history + 1) for each in sent)
+    buffers = sum(_fragments(message, profile) * times for message, times in often)
     if buffers > history:
         text = f"up to {buffers} buffers wait for acknowledgement at the same time, but the reliable stream has only {history}"
         size, time = _power_of_two(buffers), time_text(acknowledgement)

@@ -181,6 +181,16 @@ class Profile(ABC):
         )
 
     @property
+    def answers(self) -> bool:
+        """Whether the other side answers to pings, and to questions for its time."""
+        return "ping" in self.data.sizes
+
+    @property
+    def answers_late(self) -> Time:
+        """By how much the wait for such an answer can be longer than its timeout."""
+        return self.data.sending.answers_late
+
+    @property
     def threads(self) -> tuple[MiddlewareThread, ...]:
         """Its threads beside the executors: those of the profile, then those that only the description knows."""
         tasks = {task.name: task for task in self.middleware.tasks}

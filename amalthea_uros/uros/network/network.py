@@ -11,7 +11,6 @@ from amalthea_uros.spec.losses import LossesSection
 from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.assembly.context import AssemblyContext
-from amalthea_uros.uros.executors.threads import why_unknown_time
 from amalthea_uros.uros.network.checks import check_foreign, check_lengths, check_load, check_reading, check_transport
 from amalthea_uros.uros.network.queueing import Queueing
 from amalthea_uros.uros.network.receiving import Receivers, add_receivers, without_idle
@@ -93,10 +92,7 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     for frame in planned.foreign:
         if frame.name in system.processes:
             context.notes.duplicate("process or frame", frame.name, frame.origin, system.processes[frame.name].origin)
-    # What a loop sends outside of callbacks is on the wire, too; nobody knows how often.
-    reasons = {why_unknown_time(each.name, middleware): each for each in reversed(middleware.stated_executors)}
-    outside = [queueing.outside(section, reason) for reason, section in reasons.items() if reason]
-    queued = [*queueing.of(planned.messages), *map(queueing.foreign, planned.foreign), *outside]
+    queued = [*queueing.of(planned.messages), *map(queueing.foreign, planned.foreign)]
     plan = WirePlan(
         line=planned.line,
         name=free_name(planned.line.name, system),

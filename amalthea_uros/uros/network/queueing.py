@@ -19,10 +19,9 @@ from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.stimuli import Counter, Custom, InterProcess, Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.executors import ExecutorSection
-from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import body_name
+from amalthea_uros.uros.application.messages import ASKING
 from amalthea_uros.uros.assembly.executor_runnables import notification_name
 from amalthea_uros.uros.middleware.profile import Heartbeat, Profile
 from amalthea_uros.uros.transports.can import ForeignFrame
@@ -30,8 +29,6 @@ from amalthea_uros.uros.transports.line import Line, span_of, time_on
 from amalthea_uros.uros.transports.messages import WireMessage, acknowledgement_name, opposite
 
 _AT_ONCE = Span(most=0)
-#: Of what is sent an unknown number of times: the usual MTU.
-_LONGEST_PART = 512
 #: Why the arrivals of messages are unknown.
 _MEAN_ONLY = "only the mean of 'to_controller' of the agent is known"
 
@@ -102,7 +99,7 @@ class Queueing:
             heartbeat = self.profile.heartbeat(direction)
             if not heartbeat.is_answered:
                 yield self._heartbeat(heartbeat, direction)
-            elif any(each.direction is direction and each.is_acknowledged for each in messages):
+            elif any(each.direction is direction and each.message.reliable for each in messages):
                 yield self._heartbeat(heartbeat, direction)
                 yield self._answer(heartbeat, direction)
 
@@ -122,24 +119,6 @@ class Queueing:
             interval=frame.period,
             frame=frame,
             origin=frame.origin,
-        )
-
-    def outside(self, executor: ExecutorSection, reason: str) -> Queued:
-        """The messages that the loop of a thread sends outside of callbacks."""
-        name, length = f"{executor.name}_outside_callbacks", 63 if isinstance(self.line.section, Can | CanFd) else _LONGEST_PART
-        return Queued(
-            transmission=Transmission(
-                name=name,
-                wire=self.line.name,
-                direction=Direction.TO_AGENT,
-                purpose=Purpose.DATA,
-                length=length,
-                agent=_AT_ONCE,
-            ),
-            parts=(length,),
-            stimulus=Custom(name=name, description=reason, origin=executor.location()),
-            interval=None,
-            origin=executor.location(),
         )
 
     def _received(self, message: WireMessage) -> Iterator[Queued]:
@@ -199,7 +178,8 @@ class Queueing:
             ),
             parts=tuple(part.length for part in message.parts),
             stimulus=stimulus,
-            interval=message.interval,
+            interval=message.interval or None,
+            times=message.message.attempts,
             sender=sender,
             answer=answer,
             channel=message.message.channel,
@@ -213,8 +193,8 @@ class Queueing:
             transmission=self._acknowledging(message.name, opposite(message.direction), length, agent, message),
             parts=(length,),
             stimulus=InterProcess(name=name, origin=message.message.origin),
-            interval=message.interval,
-            times=len(message.parts),
+            interval=message.interval or None,
+            times=len(message.parts) * message.message.attempts,
             sender=sender,
             origin=message.message.origin,
         )
@@ -264,19 +244,20 @@ class Queueing:
     ) -> Transmission:
         is_received = direction is Direction.TO_CONTROLLER
         is_answered = message is not None and purpose is Purpose.DATA and message.is_acknowledged
+        is_asking = message is not None and message.message.kind in ASKING
         return Transmission(
             name=name,
             wire=self.line.name,
             direction=direction,
             purpose=purpose,
-            topic=message.message.topic if message is not None and purpose is Purpose.DATA else None,
+            topic=message.message.topic if message is not None and purpose is Purpose.DATA and not is_asking else None,
             callback=message.callback.name if message is not None else None,
             length=sum(parts),
             link=self.line.link,
             driver=_sum(self.line.reading(part) for part in parts) if is_received else _AT_ONCE,
             processes=self.receivers if is_received else (),
             agent=agent,
-            waits=is_answered and not is_received and self.profile.middleware.reliable.waits,
+            waits=is_answered and not is_received and (is_asking or self.profile.middleware.reliable.waits),
             is_dropped_when_busy=purpose is Purpose.DATA and not is_received and self.profile.sending.drops_when_busy,
         )
 

@@ -87,7 +87,9 @@ def publications(callback: Callback, profile: Profile) -> Iterator[Publication]:
         message = each.message
         if message.is_incoming:
             continue
-        timeout = profile.times_out_after(message.kind, message.content_bytes, reliable=message.reliable)
+        timeout = message.timeout
+        if timeout is None:
+            timeout = profile.times_out_after(message.kind, message.content_bytes, reliable=message.reliable)
         transmission = each.name if describes_wire(profile.middleware.transport) else None
         yield Publication(
             topic=message.topic,
@@ -96,6 +98,7 @@ def publications(callback: Callback, profile: Profile) -> Iterator[Publication]:
             acknowledgement=acknowledgement_name(transmission) if transmission and each.is_acknowledged else None,
             waits=timeout is not None,
             timeout=timeout,
+            attempts=message.attempts,
         )
 
 

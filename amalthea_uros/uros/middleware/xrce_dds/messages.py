@@ -25,6 +25,9 @@ _EXTRA = {
     MessageKind.RESPONSE_IN: "reply_header",
 }
 
+#: The figures of questions to the agent, and of its answers.
+_ASKED = {MessageKind.PING: ("ping", "ping_answer"), MessageKind.SYNC: ("sync", "sync_answer")}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageContent(Brief):
@@ -81,6 +84,9 @@ class MessageLayout(Profile):
 
     def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
+        if kind in _ASKED:
+            asked, answer = map(self.size, _ASKED[kind])
+            return (MessagePart(length=asked, acknowledgement=answer),)
         acknowledgement = self.size("acknowledgement") if reliable else None
         before, body = self.headers, self.payload(kind, content)
         is_whole = before + body <= self.capacity(reliable=True)
