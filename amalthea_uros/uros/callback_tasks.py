@@ -16,6 +16,7 @@ from amalthea_uros.uros.application.callbacks import Callback, body_name, regist
 from amalthea_uros.uros.application.phases import ExecutorPhases, own_task_counter
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.executor_runnables import (
+    AT_ONCE,
     ExecutorRunnables,
     PlannedCall,
     in_executor_calls,
@@ -201,8 +202,9 @@ def _body(context: AssemblyContext, callback: Callback, executor_core: str) -> R
     sending = [cost for message in callback.outgoing for cost in message_cost(publish, message.size)]
     sending += driver_costs(context.line, callback, Direction.TO_AGENT, context.profile)
     core = _core(context, callback, executor_core)
+    execution = context.converter.execute([section.execution_time, *sending], core, section.location("execution_time"))
     activities = activity_sequence(
-        context.converter.execute([section.execution_time, *sending], core, section.location("execution_time")),
+        AT_ONCE if not execution and callback.kind is HandleKind.LOOP_ITEM else execution,
         reads=dict.fromkeys([*([callback.buffer] if callback.buffer else []), *section.reads]),
         writes=dict.fromkeys(section.writes),
         sends=[message.channel for message in callback.outgoing if message.channel in context.channels],

@@ -108,24 +108,78 @@ def test_a_busy_wait_lets_nothing_of_lower_priority_execute():
     assert waiting["busy_wait"].response.worst >= waiting["sleep"].response.worst + 5 * MS
 
 
-@pytest.mark.parametrize("item", ["{publish: [p]}", "{ping: 100 ms}", "{sync: 1 s}"])
-def test_what_else_a_loop_does_leaves_its_times_unknown(item):
-    tasks = "tasks:\n  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
-    text = text_of(["{spin_some: 10 ms}", item, "{sleep: 5 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, tasks=tasks)
-    found = analyze(text)
-    assert found.executors["e0"].handles["a"].response.worst is None
-    assert "its loop also" in found.executors["e0"].handles["a"].response.reason
-    assert found.processes["Low"].response is None or found.processes["Low"].response.worst is None
-    assert found.summary.schedulable == "unknown"
-    assert "e0" in {process.name for process in simulate(text, "1 s").left_out}
+LOW = "tasks:\n  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
 
 
-def test_a_thread_that_only_sends_leaves_the_others_unknown():
+def with_item(item, *more):
+    """An executor with a subscription, in whose loop its thread does something else, too, and sleeps 5 ms."""
+    return text_of(
+        ["{spin_some: 10 ms}", item, *more, "{sleep: 5 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, tasks=LOW
+    )
+
+
+def calls_of(name, simulation):
+    handles = (handle for executor in simulation.executors for handle in executor.handles)
+    return next(handle.response_time.count for handle in handles if handle.name == name)
+
+
+def test_a_publication_of_the_loop_is_written_in_every_pass():
+    found, observed = analyze(with_item("{publish: [p]}")), simulate(with_item("{publish: [p]}"), "10 s")
+    # Of 8 bytes, which take 10 Mbit/s 86 bytes of 0.8 us each, headers included.
+    assert found.executors["e0_sends"].handles["e0_publishes_p"].response.worst == 86 * 800_000
+    # It just missed a check: 20 + 100 us of the iteration, 68.8 us, the sleep, and the 20 us before its call.
+    assert 5 * MS + 308.8 * US <= found.executors["e0"].handles["a"].response.worst <= 5 * MS + 400 * US
+    passes = observed.executors["e0"].iterations
+    assert abs(calls_of("e0_publishes_p", observed) - passes) <= 1
+    # Ten messages end a wait early.
+    assert 10_000 // 16 <= passes <= 10_000 // 15 + 10
+
+
+@pytest.mark.parametrize(("item", "answer"), [("{ping: 100 ms}", 36), ("{sync: 100 ms}", 32)])
+def test_a_loop_waits_for_the_answer_of_the_agent(item, answer):
+    (handle,) = analyze(with_item(item)).executors["e0_sends"].handles
+    # 16 bytes there and the answer back, each with 68 of headers; both links, and the agent.
+    wire = (16 + 68) * 800 + (answer + 68) * 800
+    least_round_trip = 2 * 0 + 200 * US + wire * 1000
+    most = 2 * 500 * US + 800 * US + wire * 1000
+    assert most <= handle.response.worst <= most + 200 * US
+    (seen,) = simulate(with_item(item), "10 s").executors["e0_sends"].handles
+    assert least_round_trip <= seen.response_time.min <= seen.response_time.max <= handle.response.worst
+
+
+def test_a_ping_without_an_answer_takes_its_timeouts():
+    # Nothing is known of the agent: three attempts of 100 ms, each of which can last 100 ms longer.
+    text = with_item("{ping: 100 ms, attempts: 3}").replace(", acknowledgement: {min: 200 us, max: 800 us}", "")
+    (handle,) = analyze(text).executors["e0_sends"].handles
+    assert 600 * MS <= handle.response.worst <= 601 * MS
+
+
+def test_what_is_done_every_so_often_is_done_no_more_often():
+    observed = simulate(with_item("{ping: 100 ms, every: 200 ms}"), "10 s")
+    # Passes of 15.02 ms, or a little more: it is due again after 14 of them.
+    assert 10_000 // 225 <= calls_of("e0_ping", observed) <= 10_000 // 200 + 1
+    assert observed.executors["e0"].iterations > 500
+
+
+def test_several_items_are_sent_in_their_order():
+    observed = simulate(with_item("{publish: [p]}", "{ping: 100 ms}", "{sync: 100 ms}"), "5 s")
+    assert [each.name for each in observed.executors["e0_sends"].handles] == ["e0_publishes_p", "e0_ping", "e0_sync"]
+    assert len({each.response_time.count for each in observed.executors["e0_sends"].handles}) == 1
+
+
+def test_a_thread_can_send_without_an_executor():
     sender = "    - {name: imu, priority: 6, loop: [publish: [p], sleep: 20 ms]}\n"
-    found = analyze(text_of(["{spin_some: 10 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, others=sender))
-    assert found.executors["e0"].handles["a"].response.worst is None
-    assert found.summary.schedulable == "unknown"
+    text = text_of(["{spin_some: 10 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, others=sender)
+    found = analyze(text)
     assert "EXE008" in {finding.rule for finding in found.findings}
+    assert found.executors["imu"].handles["imu_publishes_p"].response.worst is not None
+    assert 10_000 // 21 <= calls_of("imu_publishes_p", simulate(text, "10 s")) <= 10_000 // 20 + 1
+
+
+def test_a_topic_that_nobody_publishes_has_its_place_in_the_loop(tmp_path):
+    (tmp_path / "app.yaml").write_text(with_item("{publish: [q]}"))
+    with pytest.raises(ReadError, match=r"app.yaml:6:.*undefined publisher 'q'"):
+        describe(tmp_path / "app.yaml")
 
 
 def test_a_model_keeps_the_thread_of_its_executors(tmp_path):
@@ -142,6 +196,8 @@ def test_a_model_keeps_the_thread_of_its_executors(tmp_path):
         ("[spin_some: 1 ms, {spin_some: 1 ms, executor: b}, {spin_some: 1 ms, executor: b}]", "spins twice"),
         ("[{spin_some: 1 ms, sleep: 1 ms}]", "expected one of"),
         ("[spin_some: 1 ms, {sleep: 1 ms, executor: b}]", "'executor' has no effect"),
+        ("[spin_some: 1 ms, {sync: 1 s, attempts: 2}]", "'attempts' has no effect without 'ping'"),
+        ("[spin_some: 1 ms, {sleep: 1 ms, every: 1 s}]", "'every' has no effect"),
     ],
 )
 def test_a_loop_that_cannot_be_is_refused(loop, reason, tmp_path):
@@ -170,7 +226,9 @@ def random_text(rng):
     count = rng.choice([1, 2, 2, 3])
     loop = [f"{{spin_some: {rng.choice([0, 1, 5, 20])} ms{'' if n == 0 else f', executor: e{n}'}}}" for n in range(count)]
     for _ in range(rng.choice([0, 1, 1, 2])):
-        item = rng.choice(["sleep: 1 ms", "sleep: 5 ms", "busy_wait: 2 ms", "busy_wait: 500 us"])
+        waits = ["sleep: 1 ms", "sleep: 5 ms", "busy_wait: 2 ms", "busy_wait: 500 us"]
+        sends = ["publish: [p]", "ping: 2 ms", "ping: 100 ms, every: 50 ms", "sync: 100 ms"]
+        item = rng.choice(waits if rng.random() < 0.6 else sends)
         loop.insert(rng.randrange(len(loop) + 1), f"{{{item}}}")
     callbacks = {"timers": [], "subscriptions": []}
     for number in range(count * 2):

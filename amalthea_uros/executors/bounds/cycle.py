@@ -145,9 +145,7 @@ class Cycle:
             writing=writing_in_wait(self.executor, system, self.sending, writes),
         )
         cycle = replace(cycle, again=writing_again(writes.again, self.solved))
-        cycle = replace(
-            cycle, others=tuple(cycle._with_wait(each, writes) for each in others_of_thread(self.executor, system.executors))
-        )
+        cycle = replace(cycle, others=tuple(cycle._with_wait(each, writes) for each in self._others_of_thread))
         if not acknowledgements(system):
             return cycle
         return replace(cycle, backlog_age=cycle._backlog_age())
@@ -410,7 +408,18 @@ class Cycle:
     @cached_property
     def shortest(self) -> Time:
         """The shortest cycle: nothing is called."""
-        return sleep_of(self.executor).lower + self._overhead.lower // self.time_base
+        return self._shortest_besides + self._overhead.lower // self.time_base
+
+    @cached_property
+    def _shortest_besides(self) -> Time:
+        """The least time that a cycle takes besides its iteration: all sleeps, and the overhead of the others in the loop."""
+        others = (IterationDemand.of(each, self.solved.context) for each in self._others_of_thread)
+        overhead = sum(each.spin.lower + each.after.lower for each in others)
+        return sleep_of(self.executor).lower + overhead // self.time_base
+
+    @property
+    def _others_of_thread(self) -> Sequence[Executor]:
+        return others_of_thread(self.executor, self.solved.context.system.executors)
 
     @property
     def _overhead(self) -> Interval[Time]:
@@ -433,7 +442,7 @@ class Cycle:
         return self._shortest_executing(handle) + self.suspension(handle).least
 
     def _shortest_executing(self, handle: Handle) -> Time:
-        return sleep_of(self.executor).lower + (self._overhead.lower + self.demand.of_handle(handle).lower) // self.time_base
+        return self._shortest_besides + (self._overhead.lower + self.demand.of_handle(handle).lower) // self.time_base
 
     @property
     def most_served(self) -> int | None:

@@ -189,7 +189,9 @@ def outgoing_messages(
     """
 
     def message(kind: MessageKind, topic: str, size: DataSize, origin: Location | None) -> Message:
-        return Message(callback=section.name, topic=topic, kind=kind, size=size, interval=interval, reliable=True, origin=origin)
+        return Message(
+            callback=section.name, topic=topic, kind=kind, size=size, interval=interval, reliable=True, origin=origin
+        )
 
     owner = f"node {node.name!r}"
     for index, topic in enumerate(section.publishes):

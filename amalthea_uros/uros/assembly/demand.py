@@ -137,15 +137,11 @@ class DemandConverter:
     ) -> tuple[Execute, ...]:
         """Computation that consists of parts: the sum of all constant ones first, then the others one by one.
 
-        What a loop does itself can be stated to take no time, which is not unknown.
-
         Parameters
         ----------
         location : of findings about the sum
         """
         constant: Time = 0
-        parts = tuple(parts)
-        is_stated = any(isinstance(part, ExecutionTimeSection) for part in parts)
         varying: list[Demand] = []
         for part in parts:
             if part is None:
@@ -161,6 +157,5 @@ class DemandConverter:
                 if demand is not None:
                     varying.append(demand)
         self._check_rounding(constant, core, location)
-        has_fixed = constant or (is_stated and not varying)
-        fixed = [Demand(in_ticks(Constant(constant), self.controller.frequencies[core]))] if has_fixed else []
+        fixed = [Demand(in_ticks(Constant(constant), self.controller.frequencies[core]))] if constant else []
         return tuple(Execute(demand=demand) for demand in (*fixed, *varying))

@@ -14,7 +14,18 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.perf.activities import AccessKind, Activity, Call, LabelAccess, Receive, ReceiveOperation, Trigger
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Activity,
+    Call,
+    Demand,
+    Execute,
+    LabelAccess,
+    Receive,
+    ReceiveOperation,
+    Trigger,
+)
+from amalthea_uros.perf.distributions import Constant
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
@@ -29,6 +40,8 @@ from amalthea_uros.uros.assembly.planned import trigger_name
 from amalthea_uros.uros.transports.messages import driver_costs
 
 _BITS_PER_BYTE = 8
+#: What a loop sends itself takes no time besides what publishing costs: that is stated, not unknown.
+AT_ONCE = (Execute(demand=Demand(ticks=Constant(0))),)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +71,8 @@ class ExecutorRunnables:
         handles = sum(each.handles for each in callbacks)
         parts = (cost.base, *([cost.per_timer] * timer_count(callbacks)), *([cost.per_handle] * handles))
         activities = self.context.converter.execute(parts, self.core, executor.location("execution_time"))
+        if not activities and all(each.kind is HandleKind.LOOP_ITEM for each in callbacks):
+            activities = AT_ONCE
         return Runnable(name=spin_name(executor.name), activities=activities, origin=executor.location())
 
     def take_or_notify(self, callback: Callback, triggers: Iterable[str] = ()) -> Runnable:

@@ -89,6 +89,9 @@ def _check_polling(executor: Executor, section: spec.ExecutorSection, notes: Not
             else f"Set a timeout of {time_text(resolution)} or more"
         )
         notes.warning("EXE003", message, where, f"{timeout}, or add a 'sleep'.")
+    elif reason and all(handle.kind is HandleKind.LOOP_ITEM for handle in executor.handles):
+        message = f"{executor.name!r} can use all the time that others leave it: {reason}"
+        notes.warning("EXE003", message, where, "Add a 'sleep'.")
     elif reason:
         message = (
             f"{executor.name!r} has timers only: the wait of the middleware returns at once, and the loop uses all the time that "

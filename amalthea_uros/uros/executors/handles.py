@@ -46,7 +46,7 @@ def handles_of(callback: Callback, take: Runnable | None, body: Runnable, profil
     """
     section = callback.section
     is_subscription = isinstance(section, Subscription)
-    has_messages = callback.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION)
+    has_messages = callback.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION, HandleKind.LOOP_ITEM)
     reliable = has_messages and (not isinstance(section, Subscription) or section.reliability == "reliable")
     incoming = callback.incoming
     handle = Handle(

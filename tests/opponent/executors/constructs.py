@@ -15,9 +15,12 @@ def constructs_of(content: Section) -> frozenset[str]:
 def _of_loops(content: Section) -> Iterator[str]:
     executors = content["middleware"]["executors"]
     for executor in executors:
-        loop = executor["loop"]
-        kind = next(key for key in ("spin_some", "spin_period", "spin") if key in loop)
-        yield f"loop: {kind}" + ((", sleep" if "sleep" in loop else ", no sleep") if kind == "spin_some" else "")
+        loop = executor.get("loop", {})
+        if isinstance(loop, list):
+            yield from (f"item of a loop: {next(iter(item))}" for item in loop)
+        elif loop:
+            kind = next(key for key in ("spin_some", "spin_period", "spin") if key in loop)
+            yield f"loop: {kind}" + ((", sleep" if "sleep" in loop else ", no sleep") if kind == "spin_some" else "")
         trigger = executor.get("trigger", "any")
         yield f"trigger: {trigger if isinstance(trigger, str) else next(iter(trigger))}"
         yield f"semantics: {executor.get('semantics', 'ROS')}"
@@ -86,7 +89,7 @@ def _of_wire(content: Section) -> Iterator[str]:
 def _of_processes(content: Section) -> Iterator[str]:
     executors = content["middleware"]["executors"]
     for task in content["tasks"]:
-        yield "task above" if task["priority"] > max(each["priority"] for each in executors) else "task below"
+        yield "task above" if task["priority"] > max(each.get("priority", 0) for each in executors) else "task below"
         if "locks" in task:
             yield "locks"
         if "sporadic" in task:
