@@ -57,7 +57,7 @@ class HandleKind(StrEnum):
     ACTION_CLIENT = "action client"
     PARAMETER_SERVICE = "parameter service"
     LIFECYCLE_SERVICE = "lifecycle service"
-    #: What a loop does itself, in every iteration: it publishes, or asks the agent for something.
+    #: A loop publishes itself, or asks the agent for something, in every iteration.
     LOOP_ITEM = "loop item"
 
 

@@ -33,8 +33,8 @@ class SendingData(DescriptionSection):
     """Whether a reliable message keeps its sender until it is acknowledged."""
     flush_timeout: Duration | None = None
     """Time after which emptying full buffers times out, when a message is longer than all of them together."""
-    answers_late: Offset = 0
-    """By how much the wait for the answer to a ping can be longer than its timeout."""
+    replies_late: Offset = 0
+    """By how much the wait for the reply to a ping can be longer than its timeout."""
     heartbeat: Duration | None = None
     """Least interval of messages of the other side that ask for acknowledgements."""
     holds_session_while_waiting: bool = False

@@ -6,7 +6,7 @@ callback.
 - A timer: once it is due, waits end at once. In the worst case what is ready was fixed just before, so that it is called after one
   cycle: L + E. That a wait can end up to 1 ms before the timer is due, without a call, is no longer than that.
 - A guard condition: a trigger does not end the wait, so that it is seen after one cycle and the wait: L + W + E.
-- What a loop does itself: nothing releases it, so that its time counts from the beginning of its iteration: E.
+- An item of a loop, such as a ping: nothing releases it, so that its time counts from the beginning of its iteration: E.
 - A message: after n cycles, see `queue`: n L + E, or n (L + W) + E if messages can be stored before the iteration that takes them, or
   what `storage` has for that.
 """

@@ -25,7 +25,7 @@ LIFESPAN = 30 * SECOND
 
 
 def is_message(handle: Handle) -> bool:
-    """Whether a handle receives messages: all do but timers, guard conditions, and what a loop does itself."""
+    """Whether a handle receives messages: all do but timers, guard conditions and items of loops."""
     return handle.kind not in (HandleKind.TIMER, HandleKind.GUARD_CONDITION, HandleKind.LOOP_ITEM)
 
 

@@ -30,7 +30,7 @@ from amalthea_uros.units import Time
 #: Assumptions.
 _HOST = "the host is not simulated: its messages come at the interval and with the jitter that the controller states"
 _AT_ONCE = Span(most=0)
-#: What is no receiver of messages.
+#: The kinds of handles that receive no messages.
 _KINDS = {HandleKind.TIMER: layout.TIMER, HandleKind.GUARD_CONDITION: layout.FLAG, HandleKind.LOOP_ITEM: layout.ITEM}
 
 

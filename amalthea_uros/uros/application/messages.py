@@ -42,7 +42,7 @@ class MessageKind(StrEnum):
 SENT = frozenset(
     {MessageKind.PUBLICATION, MessageKind.REQUEST_OUT, MessageKind.RESPONSE_OUT, MessageKind.PING, MessageKind.SYNC}
 )
-#: What the agent answers itself, without acknowledging it.
+#: Questions, which the agent answers itself.
 ASKING = frozenset({MessageKind.PING, MessageKind.SYNC})
 #: What the names of the channels of messages end with.
 _CHANNELS = {
@@ -150,7 +150,7 @@ def publication(
     nodes: Sequence[NodeSection],
     interval: Time,
     origin: Location | None,
-    notes: Notes,
+    findings: Notes,
 ) -> Message | None:
     """A message to a topic; None, with a finding, if nothing publishes there.
 
@@ -163,7 +163,7 @@ def publication(
     publisher = _publisher(topic, node, nodes)
     if publisher is None:
         topics = [publisher.topic for each in nodes for publisher in each.publishers]
-        notes.undefined("publisher", topic, topics, origin, owner=f"node {node.name!r}")
+        findings.undefined("publisher", topic, topics, origin, owner=f"node {node.name!r}")
         return None
     return Message(
         callback=sender,
@@ -195,9 +195,9 @@ def outgoing_messages(
 
     owner = f"node {node.name!r}"
     for index, topic in enumerate(section.publishes):
-        found = publication(section.name, topic, node, nodes, interval, section.location("publishes", index), notes)
-        if found is not None:
-            yield found
+        sent = publication(section.name, topic, node, nodes, interval, section.location("publishes", index), notes)
+        if sent is not None:
+            yield sent
     every: Sequence[Client | ActionClient] = [*node.clients, *node.action_clients]
     clients = {client.name: client for client in every}
     for index, name in enumerate(section.requests):

@@ -40,7 +40,7 @@ from amalthea_uros.uros.assembly.planned import trigger_name
 from amalthea_uros.uros.transports.messages import driver_costs
 
 _BITS_PER_BYTE = 8
-#: What a loop sends itself takes no time besides what publishing costs: that is stated, not unknown.
+#: A message that a loop sends itself takes no time besides the cost of publishing, which is stated, not unknown.
 AT_ONCE = (Execute(demand=Demand(ticks=Constant(0))),)
 
 

@@ -1,4 +1,4 @@
-"""What loops send outside of callbacks, as callbacks of the executors that stand for it."""
+"""Messages that loops send outside of callbacks, as callbacks of the executors that stand for them."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from amalthea_uros.uros.executors.threads import ThreadItems, threads_with_items
 from amalthea_uros.uros.middleware.profile import Profile
 
 
-def loop_callbacks(description: Description, profile: Profile, notes: Notes) -> Iterator[Callback]:
+def loop_callbacks(description: Description, profile: Profile, findings: Notes) -> Iterator[Callback]:
     """A callback for each item of a loop that sends, with a finding for each topic without a publisher."""
     nodes = description.application.nodes
     if not nodes:
         return
     for thread in threads_with_items(description.middleware):
-        builder = _Builder(thread, thread.pace(description.os), nodes, profile, notes)
-        for station in thread.stations:
-            for item in station.sent:
-                yield builder.callback(item, station.name)
+        of_thread = _ThreadCallbacks(thread, thread.pace(description.os), nodes, profile, findings)
+        for part in thread.parts:
+            for item in part.sent:
+                yield of_thread.callback(item, part.name)
 
 
 @dataclass(frozen=True, slots=True)
-class _Builder:
+class _ThreadCallbacks:
     """Makes the callbacks of a thread.
 
     Attributes
@@ -43,7 +43,7 @@ class _Builder:
     pace: Time
     nodes: Sequence[NodeSection]
     profile: Profile
-    notes: Notes
+    findings: Notes
 
     def callback(self, item: LoopItem, executor: str) -> Callback:
         """The callback of an item."""
@@ -53,7 +53,7 @@ class _Builder:
         section._where = item._where
         if not interval and self.profile.middleware.transport.can is not None:
             text = f"nothing keeps the messages apart that {name!r} sends on the CAN bus: the loop has no sleep"
-            self.notes.error("APP003", text, item.location(), "State 'every', the least time between two of them.")
+            self.findings.error("APP003", text, item.location(), "State 'every', the least time between two of them.")
             interval = SECOND
         return Callback(
             section=section,
@@ -81,15 +81,15 @@ class _Builder:
     def _messages(self, item: LoopItem, name: str, interval: Time) -> Iterator[Message]:
         for index, topic in enumerate(item.publish or ()):
             place = item.location("publish", index)
-            found = publication(name, topic, self._node(item), self.nodes, interval, place, self.notes)
-            if found is not None:
-                yield found
+            message = publication(name, topic, self._node(item), self.nodes, interval, place, self.findings)
+            if message is not None:
+                yield message
         asked = MessageKind.PING if item.ping is not None else MessageKind.SYNC if item.sync is not None else None
         if asked is None:
             return
-        if not self.profile.answers:
+        if not self.profile.replies_to_pings:
             text = f"{self.profile.title} has no {asked}"
-            self.notes.error("APP003", text, item.location(), "Remove the item, or set another middleware.")
+            self.findings.error("APP003", text, item.location(), "Remove the item, or set another middleware.")
         attempts, once = item.attempts or 1, item.ping if item.ping is not None else item.sync
         yield Message(
             callback=name,
@@ -100,7 +100,7 @@ class _Builder:
             reliable=False,
             origin=item.location(),
             attempts=attempts,
-            timeout=attempts * ((once or 0) + self.profile.answers_late),
+            timeout=attempts * ((once or 0) + self.profile.replies_late),
         )
 
 

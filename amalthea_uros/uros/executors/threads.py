@@ -1,8 +1,8 @@
-"""The loop of a thread as a list: its stations, at which executors spin or the thread itself sends, and what it waits for between them.
+"""The loop of a thread as a list: its parts, at which executors spin or the thread itself sends, and what it waits for between them.
 
-What each executor of a thread needs to know: the sleeps of the whole loop, which pace it; those between its spin and the next one; and
-what the thread waits for without sleeping there. What the thread sends outside of callbacks is an executor, too: it waits for nothing
-and calls what it sends in every iteration. A list that is rotated describes the same loop, so items before the first station follow
+An executor of a thread needs to know: the sleeps of the whole loop, which pace it; those between its spin and the next one; and
+what the thread waits for without sleeping there. Messages that the thread sends outside of callbacks are an executor, too: it waits
+for nothing, and sends them in every iteration. A list that is rotated describes the same loop, so items before the first part follow
 the last one.
 """
 
@@ -24,7 +24,7 @@ from amalthea_uros.uros.executors.sleeps import slept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Station:
+class LoopPart:
     """A place of a loop at which it waits or sends.
 
     Attributes
@@ -54,29 +54,29 @@ class ThreadItems:
     items: tuple[LoopItem, ...]
 
     @property
-    def stations(self) -> tuple[Station, ...]:
-        """Its stations in order, that of its first executor first."""
+    def parts(self) -> tuple[LoopPart, ...]:
+        """Its parts in order, that of its first executor first."""
         begins = [item.spin_some is not None for item in self.items]
         spins = any(begins)
         first = (begins if spins else [item.uses_agent for item in self.items]).index(True)
-        found: list[Station] = []
+        parts: list[LoopPart] = []
         for item in (*self.items[first:], *self.items[:first]):
             if item.spin_some is not None:
-                found.append(Station(name=item.executor or self.owner, timeout=item.spin_some))
+                parts.append(LoopPart(name=item.executor or self.owner, timeout=item.spin_some))
             elif not item.uses_agent:
-                found[-1] = replace(found[-1], after=(*found[-1].after, item))
-            elif found and found[-1].sent and not found[-1].after:
-                found[-1] = replace(found[-1], sent=(*found[-1].sent, item))
+                parts[-1] = replace(parts[-1], after=(*parts[-1].after, item))
+            elif parts and parts[-1].sent and not parts[-1].after:
+                parts[-1] = replace(parts[-1], sent=(*parts[-1].sent, item))
             else:
-                number = sum(bool(each.sent) for each in found) + spins
+                number = sum(bool(each.sent) for each in parts) + spins
                 name = self.owner if not number else f"{self.owner}_sends" if number == 1 else f"{self.owner}_sends_{number}"
-                found.append(Station(name=name, sent=(item,)))
-        return tuple(found)
+                parts.append(LoopPart(name=name, sent=(item,)))
+        return tuple(parts)
 
     @property
     def executors(self) -> tuple[str, ...]:
-        """The executors of its stations, in order."""
-        return tuple(each.name for each in self.stations)
+        """The executors of its parts, in order."""
+        return tuple(each.name for each in self.parts)
 
     def pace(self, os: OsSection) -> Time:
         """The least time between two passes of the loop: its sleeps, in the long run."""
@@ -90,7 +90,7 @@ class ThreadItems:
         pace = sleeps[0].pace if len(sleeps) == 1 else 0
         return ThreadLoop(
             kind=LoopKind.SLEEPING,
-            timeout=self._station(name).timeout,
+            timeout=self._part(name).timeout,
             sleep=most,
             sleep_early=most - least,
             pace=pace if pace > least else 0,
@@ -98,19 +98,19 @@ class ThreadItems:
 
     def place(self, name: str, os: OsSection) -> ThreadPlace | None:
         """The place of one of its executors; None if it is the only one."""
-        if len(self.stations) < 2:
+        if len(self.parts) < 2:
             return None
-        sleeps = [slept(item.sleep, os) for item in self._station(name).after if item.sleep]
+        sleeps = [slept(item.sleep, os) for item in self._part(name).after if item.sleep]
         most = sum(each.most for each in sleeps)
         return ThreadPlace(thread=self.owner, sleep=most, sleep_early=most - sum(each.least for each in sleeps))
 
     def busy_wait(self, name: str, os: OsSection) -> Boundaries[Time] | None:
         """The time that the thread waits busily after the spin of an executor; None if there is nothing."""
-        waits = [item.busy_wait for item in self._station(name).after if item.busy_wait]
+        waits = [item.busy_wait for item in self._part(name).after if item.busy_wait]
         return Boundaries(lower=sum(waits), upper=sum(_latest(each, os) for each in waits)) if waits else None
 
-    def _station(self, name: str) -> Station:
-        return next(each for each in self.stations if each.name == name)
+    def _part(self, name: str) -> LoopPart:
+        return next(each for each in self.parts if each.name == name)
 
 
 def threads_with_items(middleware: Middleware) -> Iterator[ThreadItems]:
@@ -123,17 +123,17 @@ def threads_with_items(middleware: Middleware) -> Iterator[ThreadItems]:
 
 def executors_of_loops(middleware: Middleware) -> dict[str, ExecutorSection]:
     """All executors by name: those that are stated, and those that stand for what loops send outside of callbacks."""
-    found = {each.name: each for each in middleware.stated_executors}
+    sections = {each.name: each for each in middleware.stated_executors}
     for thread in threads_with_items(middleware):
-        owner = found[thread.owner]
-        for station in thread.stations:
-            if station.sent:
-                found[station.name] = _sending(owner, station.name)
-    return found
+        owner = sections[thread.owner]
+        for part in thread.parts:
+            if part.sent:
+                sections[part.name] = _sending(owner, part.name)
+    return sections
 
 
 def _sending(owner: ExecutorSection, name: str) -> ExecutorSection:
-    """What stands for messages that the thread of a section sends outside of callbacks: an executor that costs nothing itself."""
+    """The executor that stands for messages which the thread of a section sends outside of callbacks; it costs nothing itself."""
     at_once = ExecutionTimeSection.model_construct(min=0, max=0)
     kept = {
         "name": name,
@@ -153,7 +153,7 @@ def _latest(wait: Time, os: OsSection) -> Time:
 
 
 def thread_items(name: str, middleware: Middleware) -> ThreadItems | None:
-    """The items of the loop that an executor is a station of; None if no list describes it."""
+    """The items of the loop that an executor is a part of; None if no list describes it."""
     return next((each for each in threads_with_items(middleware) if name in each.executors), None)
 
 

@@ -181,14 +181,14 @@ class Profile(ABC):
         )
 
     @property
-    def answers(self) -> bool:
-        """Whether the other side answers to pings, and to questions for its time."""
+    def replies_to_pings(self) -> bool:
+        """Whether the other side replies to pings, and to questions for its time."""
         return "ping" in self.data.sizes
 
     @property
-    def answers_late(self) -> Time:
-        """By how much the wait for such an answer can be longer than its timeout."""
-        return self.data.sending.answers_late
+    def replies_late(self) -> Time:
+        """By how much the wait for such a reply can be longer than its timeout."""
+        return self.data.sending.replies_late
 
     @property
     def threads(self) -> tuple[MiddlewareThread, ...]:

@@ -25,8 +25,8 @@ _EXTRA = {
     MessageKind.RESPONSE_IN: "reply_header",
 }
 
-#: The figures of questions to the agent, and of its answers.
-_ASKED = {MessageKind.PING: ("ping", "ping_answer"), MessageKind.SYNC: ("sync", "sync_answer")}
+#: The figures of questions to the agent, and of its replies.
+_ASKED = {MessageKind.PING: ("ping", "ping_reply"), MessageKind.SYNC: ("sync", "sync_reply")}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,8 +85,8 @@ class MessageLayout(Profile):
     def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message; one that cannot be sent is a single part, which is longer than the MTU allows."""
         if kind in _ASKED:
-            asked, answer = map(self.size, _ASKED[kind])
-            return (MessagePart(length=asked, acknowledgement=answer),)
+            asked, reply = map(self.size, _ASKED[kind])
+            return (MessagePart(length=asked, acknowledgement=reply),)
         acknowledgement = self.size("acknowledgement") if reliable else None
         before, body = self.headers, self.payload(kind, content)
         is_whole = before + body <= self.capacity(reliable=True)
