@@ -41,14 +41,15 @@ def _timeout(chance: Random) -> str:
 
 
 def _own_topics(chance: Random, content: Section) -> list[str]:
-    """Publishers that only loops use, and those of callbacks."""
+    """Topics that only loops publish, and those of callbacks; not those that come back, whose interval is that of a timer."""
     node = content["application"]["nodes"][0]
+    received = {each["topic"] for each in node.get("subscriptions", ())}
     for number in range(chance.choice((1, 2))):
         publisher = {"topic": f"loop{number}", "message_size": f"{chance.choice((4, 24))} B"}
         if chance.random() < 0.6:
             publisher["reliability"] = "best-effort"
         node["publishers"].append(publisher)
-    return [each["topic"] for each in node["publishers"]]
+    return [each["topic"] for each in node["publishers"] if each["topic"] not in received]
 
 
 def _sent(chance: Random, topics: list[str]) -> Section:
