@@ -12,7 +12,7 @@ from executor_kernel import Kernel, Listen, Lock, Mutex, Run, Signal, Until
 from amalthea_uros.perf.executors import HandleKind, LoopKind, TriggerKind
 
 MS = 10**9
-WITHOUT_MESSAGES = (HandleKind.TIMER, HandleKind.GUARD_CONDITION)
+WITHOUT_MESSAGES = (HandleKind.TIMER, HandleKind.GUARD_CONDITION, HandleKind.LOOP_ITEM)
 
 
 @dataclass
@@ -90,6 +90,10 @@ class Entity:
     def is_guard(self):
         return self.handle.kind is HandleKind.GUARD_CONDITION
 
+    @property
+    def is_item(self):
+        return self.handle.kind is HandleKind.LOOP_ITEM
+
     def missed(self):
         self.lost += 1
         self.seen.lost.append(self.lost)
@@ -103,7 +107,7 @@ class Entity:
 
     def look(self, now):
         """After the wait: whether it is ready, for the rest of the round."""
-        if self.is_timer:
+        if self.is_timer or self.is_item:
             self.ready = self.due <= now
         elif self.is_guard:
             self.ready, self.taken, self.flag = self.flag is not None, self.flag, None
@@ -111,17 +115,22 @@ class Entity:
         else:
             self.ready = bool(self.stored)
 
-    def take(self):
-        """The release of what is served now; None for a call without data."""
+    def take(self, now):
+        """The release of what is served now; None for a call without data. Nothing releases an item of a loop but its turn."""
         if not self.ready:
             return None
         self.lost = 0
+        if self.is_item:
+            return now
         if self.is_timer or self.is_guard:
             return self.taken if self.is_guard else self.due
         return self.stored.popleft() if self.stored else None
 
     def advance(self, now):
-        """Call of a timer: whole periods that have passed are lost."""
+        """Call of a timer: whole periods that have passed are lost; an item of a loop is due an interval later."""
+        if self.is_item:
+            self.due = now + (self.handle.interval or 0)
+            return
         period = self.handle.interval
         self.due += period
         if self.due <= now:
@@ -141,16 +150,21 @@ class Played:
         self.prepares, self.looks = random.choice((0, 0, 2, 4)), random.choice((0, 0, 2, 4))
         self.is_shared = False
         self.guards = Signal()
+        self.members = [self]
 
-    def steps(self):
-        """The thread."""
+    def steps(self, members):
+        """The thread, in which some executors spin one after the other."""
         loop, kernel = self.model.loop, self.kernel
         yield Until(self.start)
         invoked, woken = kernel.now, None
         while True:
             begin = kernel.now
-            yield from self._spin_some(loop.timeout)
-            if loop.kind is LoopKind.SLEEPING and loop.sleep:
+            for one in members:
+                one.members = members
+                yield from one._spin_some(one.model.loop.timeout)
+                if (place := one.model.place) is not None and place.sleep:
+                    yield Until(self.spans.draw(kernel.now + place.sleep - place.sleep_early, kernel.now + place.sleep))
+            if self.model.place is None and loop.kind is LoopKind.SLEEPING and loop.sleep:
                 least = kernel.now + loop.sleep - loop.sleep_early
                 end = self.spans.draw(least, kernel.now + loop.sleep)
                 if woken is not None and loop.pace > loop.sleep - loop.sleep_early:
@@ -168,7 +182,8 @@ class Played:
 
     def _next(self):
         """When anything changes next, for a loop that takes no time."""
-        times = [each.due for each in self.entities if each.is_timer and each.due > self.kernel.now]
+        entities = [each for one in self.members for each in one.entities]
+        times = [each.due for each in entities if (each.is_timer or each.is_item) and each.due > self.kernel.now]
         if self.kernel.next_event is not None:
             times.append(self.kernel.next_event)
         return max(min(times, default=self.kernel.now + MS), self.kernel.now + 1)
@@ -204,7 +219,13 @@ class Played:
     def _skip(self, total):
         """Rounds of a bare loop that find nothing, at once."""
         loop, kernel = self.model.loop, self.kernel
-        if self.is_shared or not total or (loop.kind is LoopKind.SLEEPING and loop.sleep) or self.session.unread:
+        if (
+            self.is_shared
+            or len(self.members) > 1
+            or not total
+            or (loop.kind is LoopKind.SLEEPING and loop.sleep)
+            or self.session.unread
+        ):
             return
         if loop.kind is LoopKind.PERIODIC or any(each.handle.always for each in self.entities):
             return
@@ -260,7 +281,7 @@ class Played:
         taken = {}
         if self.model.takes_first:
             for entity in chosen:
-                if not entity.is_timer:
+                if not (entity.is_timer or entity.is_item):
                     taken[id(entity)] = yield from self._take(entity)
         for entity in chosen:
             if id(entity) in taken:
@@ -268,7 +289,7 @@ class Played:
             else:
                 release = yield from self._take(entity)
             start = self.kernel.now
-            if entity.is_timer:
+            if entity.is_timer or entity.is_item:
                 entity.advance(start)
             yield from self._call(entity)
             if release is not None:
@@ -279,7 +300,7 @@ class Played:
     def _take(self, entity):
         if entity.handle.take:
             yield Run(self.spans.draw(*self.spans.costs[entity.handle.take]))
-        return entity.take()
+        return entity.take(self.kernel.now)
 
     def _call(self, entity):
         cost = self.spans.draw(*self.spans.costs[entity.handle.runnable])
@@ -325,14 +346,18 @@ def play(executors, spans, horizon, *, random=None, preempting=(), priorities=No
     start : of the first spin; somewhere in a sleep unless told
     """
     random, kernel, sessions = random or Random(0), Kernel(), {}
-    played = []
+    played, threads = [], {}
     for number, executor in enumerate(executors):
         session = sessions.setdefault(executor.session, Session(executor.waiting.slots))
         first = _start(executor.loop, random) if start is None else start
         one = Played(executor, kernel, session, spans, random, first)
-        one.is_shared = sum(each.session == executor.session for each in executors) > 1 and executor.session is not None
+        sharing = {_thread(each) for each in executors if each.session == executor.session}
+        one.is_shared = len(sharing) > 1 and executor.session is not None
         played.append(one)
-        kernel.start(one.steps(), (priorities or {}).get(executor.name, 5 - number))
+        members = threads.setdefault(_thread(executor), [])
+        members.append(one)
+        if len(members) == 1:
+            kernel.start(one.steps(members), (priorities or {}).get(executor.name, 5 - number))
         for entity in one.entities:
             _release(entity, one, session, kernel, horizon, random, (delays or {}).get(entity.handle.name, 0))
     for priority, period, offset, least, most in preempting:
@@ -342,12 +367,18 @@ def play(executors, spans, horizon, *, random=None, preempting=(), priorities=No
         for entity in one.entities:
             entity.seen.waiting += [kernel.now - each for each in entity.stored]
             entity.seen.waiting += [
-                kernel.now - each for each in (entity.flag, entity.due) if each is not None and each < kernel.now
+                kernel.now - each
+                for each in (entity.flag, None if entity.is_item else entity.due)
+                if each is not None and each < kernel.now
             ]
     for session in sessions.values():
         for entity, release in session.unread:
             entity.seen.waiting.append(kernel.now - release)
     return played
+
+
+def _thread(executor):
+    return executor.name if executor.place is None else executor.place.thread
 
 
 def _start(loop, random):
@@ -358,6 +389,9 @@ def _start(loop, random):
 def _release(entity, played, session, kernel, horizon, random, delay):
     """Put what makes a handle ready into the future."""
     handle = entity.handle
+    if entity.is_item:
+        entity.due = 0
+        return
     interval, jitter = handle.interval, handle.jitter + delay
     phase = handle.phase
     if phase is None:

@@ -18,6 +18,7 @@ from amalthea_uros.perf.executors import (
     LoopKind,
     Publication,
     ThreadLoop,
+    ThreadPlace,
     TriggerCondition,
     TriggerKind,
     WaitBehaviour,
@@ -145,6 +146,40 @@ def _handles(random, prefix, varying, sending, delays, shape):
     return found
 
 
+def _with_items(random, models, varying, sending, costs):
+    """Have the thread of the last executor also send itself: what does so, and what its task calls."""
+    spinning = models.pop()
+    name, loop = f"{spinning.name}_sends", replace(spinning.loop, pace=0)
+    handles = []
+    for number in range(random.choice((1, 1, 2))):
+        (handle, span), *_ = _handles(random, f"{name}{number}_", varying, sending, {}, ("timer",))
+        interval = random.choice((None, None, 30 * MS, 137_000 * US))
+        handles.append(replace(handle, kind=HandleKind.LOOP_ITEM, interval=interval, phase=None))
+        costs[handle.runnable] = span
+    sleeps = ThreadPlace(thread=spinning.name, sleep=loop.sleep, sleep_early=loop.sleep_early)
+    places = [sleeps, ThreadPlace(thread=spinning.name)]
+    random.shuffle(places)
+    item = replace(
+        spinning,
+        name=name,
+        task=name,
+        spin=f"{name}_Spin",
+        loop=replace(loop, timeout=0),
+        handles=tuple(handles),
+        trigger=TriggerCondition(kind=TriggerKind.ALWAYS),
+        takes_first=False,
+        place=places[1],
+    )
+    models += [replace(spinning, loop=loop, place=places[0]), item]
+    calls = [
+        ProbabilitySwitch(
+            branches=(Chance(weight=1.0, activities=(Call(runnable=each.runnable),)), Chance(weight=1.0, activities=()))
+        )
+        for each in handles
+    ]
+    return item, calls
+
+
 def _trigger(random, names):
     kind = random.choice(("any",) * 12 + ("all", "one", "always", "always", "custom"))
     match kind:
@@ -215,6 +250,12 @@ def application(random: Random, executors=None) -> Application:
             least = max(loop.sleep - loop.sleep_early, loop.pace if loop.sleep else 0) + spin[0] * US
             stimuli.append(RelativePeriodic(name=f"{name}_loop", distance=Constant(max(least, MS)), has_maximum=False))
         priorities[name] = 5 - number
+        if loop.kind is LoopKind.SLEEPING and loop.sleep and random.random() < 0.3:
+            item, calls = _with_items(random, models, varying, sending, costs)
+            spins[item.name], priorities[item.name] = (0, 0), priorities[name]
+            runnables.append(Runnable(name=item.spin, activities=(_execute((0, 0)),)))
+            sends = (Call(runnable=item.spin), *calls)
+            processes.append(Proc(item.name, sends, stimuli=(f"{name}_loop",), priority=priorities[name]))
         processes.append(Proc(name, tuple(body), stimuli=(f"{name}_loop",), priority=priorities[name]))
     runnables += [Runnable(name=name, callback=True, activities=(_execute(span),)) for name, span in costs.items()]
     preempting = []
@@ -278,8 +319,8 @@ def _of_handle(seen, handle):
     ):
         found.append(f"{name}: terms are not positive, or do not add up to {response.worst}")
     if seen.lost:
-        if handle.lost is None:
+        if handle.lost is None and not response.reason:
             found.append(f"{name}: lost {max(seen.lost)} untold")
-        elif handle.lost.most is not None and max(seen.lost) > handle.lost.most:
+        elif handle.lost is not None and handle.lost.most is not None and max(seen.lost) > handle.lost.most:
             found.append(f"{name}: lost {max(seen.lost)} in one go > {handle.lost.most}")
     return found

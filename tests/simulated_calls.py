@@ -68,7 +68,12 @@ def fixed(seed):
     for executor in app.system.executors:
         handles = [
             # The player pays for taking what is not there, the model does not.
-            replace(each, publications=(), phase=chance.randrange(1, each.interval), take=None if each.always else each.take)
+            replace(
+                each,
+                publications=(),
+                phase=chance.randrange(1, each.interval) if each.interval else None,
+                take=None if each.always else each.take,
+            )
             for each in executor.handles
         ]
         executors.append(replace(executor, handles=tuple(handles)))

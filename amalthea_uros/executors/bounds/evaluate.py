@@ -55,8 +55,8 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
     if stored is not None:
         ready = stored.most
     start, end = cycle.until_start(handle), cycle.until_end(handle)
-    if handle.kind is HandleKind.LOOP_ITEM:
-        ready = 0
+    is_item = handle.kind is HandleKind.LOOP_ITEM
+    ready = 0 if is_item else ready
     worst = None if ready is None or end is None else ready + end
     lateness = None
     if handle.kind is HandleKind.TIMER:
@@ -83,7 +83,9 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
         ),
         lateness=lateness,
         lost=lost,
-        terms=() if worst is None else _terms(_until_ready(cycle, delay, wait, waited_for, stored), handle, cycle, worst),
+        terms=()
+        if worst is None
+        else _terms([] if is_item else _until_ready(cycle, delay, wait, waited_for, stored), handle, cycle, worst),
     )
 
 

@@ -41,6 +41,9 @@ _MOST_EXECUTIONS = 20
 _MOST_SHARES = 20
 #: Further changes shorten a latency less, and further drawbacks of a change are only counted.
 _MOST_CHANGES, _MOST_DRAWBACKS = 8, 3
+#: The instants from which the response time of a handle counts, by its kind; that of a message from its arrival.
+_RELEASES = {HandleKind.TIMER: "when it is due", HandleKind.LOOP_ITEM: "the beginning of its iteration"}
+_ARRIVAL = "when it has arrived at the controller"
 
 
 def explanation_document(explanation: Explanation) -> Document:
@@ -185,9 +188,8 @@ def _callback(explanation: CallbackExplanation) -> Iterator[Block]:
     if callback.deadline is not None and not explanation.handles:
         yield Sentences([f"from the activation of {process.name}; deadline {time_text(callback.deadline)}"])
     for handle in explanation.handles:
-        release = "when it is due" if handle.kind is HandleKind.TIMER else "when it has arrived at the controller"
         interval = "" if handle.interval is None else f"; every {time_text(handle.interval)} at most"
-        yield Sentences([f"{handle.kind.value} {handle.name}, from {release}{interval}"])
+        yield Sentences([f"{handle.kind.value} {handle.name}, from {_RELEASES.get(handle.kind, _ARRIVAL)}{interval}"])
         yield terms_of(handle)
         if handle.lost is not None:
             lost = f"{handle.lost.what} {'are' if handle.lost.is_certain else 'can be'} lost: {handle.lost.sequence}"

@@ -26,7 +26,9 @@ def different_calls(seed: int, tally: Tally) -> list[str]:
 def _of_executors(seed: int, tally: Tally) -> list[str]:
     app = loops.fixed(seed)
     system, until = _apart(app.system), 300 * MS
-    is_bare = any(least == 0 for least, _ in app.spins.values())
+    # What sends outside of callbacks takes no time itself.
+    costs = [app.spins[each.name] for each in system.executors if each.place is None or each.place.thread == each.name]
+    is_bare = any(least == 0 for least, _ in costs)
     # Who is first of two of equal priority is decided elsewhere.
     is_tied = any(priority in app.priorities.values() for priority, *_ in app.preempting)
     # Executors without a session take the messages of each other, as the player has it.
@@ -58,7 +60,7 @@ def _of_executors(seed: int, tally: Tally) -> list[str]:
 def _apart(system: System) -> System:
     executors = [
         replace(each, loop=replace(each.loop, sleep=each.loop.sleep + _APART * number, pace=each.loop.pace + _APART * number))
-        if number and each.loop.kind is LoopKind.SLEEPING and each.loop.sleep
+        if number and each.loop.kind is LoopKind.SLEEPING and each.loop.sleep and each.place is None
         else each
         for number, each in enumerate(system.executors)
     ]
