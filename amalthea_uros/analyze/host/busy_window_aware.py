@@ -1,4 +1,4 @@
-"""The calls of others in a busy window: all that are released before a callback is, and then those at the polling points until its call.
+"""The calls of others in a busy window: all that are released before a callback is, and those at the polling points until its call.
 
 After T. Blass et al., RTSS 2021 (see `starvation_free`), the busy-window-aware analysis. If a job is released `a` after the begin of
 a busy window, each other callback is called for what is released up to `a`, and then once for each polling point at most.
@@ -37,9 +37,7 @@ def _latest_after(after: Time, index: int, ready: ReadySet, known: Mapping[str, 
     """The response time of a job that is released so long after the begin of the busy window."""
     task, limit = ready.tasks[index], known[ready.tasks[index].name]
     earlier = 1 + task.demand.max_demand(task.events.eta_plus(after + 1) - 1)
-    most = [
-        other.events.eta_plus(after) + ready.most_calls(number, index, known) for number, other in enumerate(ready.tasks)
-    ]
+    most = [other.events.eta_plus(after) + ready.most_calls(number, index, known) for number, other in enumerate(ready.tasks)]
 
     def before(start: Time) -> Time:
         calls = ((other, min(other.events.eta_plus(start), count)) for other, count in zip(ready.tasks, most, strict=True))

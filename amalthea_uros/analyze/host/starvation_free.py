@@ -62,9 +62,7 @@ def improved(bound: Bound, ready: ReadySet, known: Mapping[str, Response]) -> Ma
     """
     best = {name: response.worst or 0 for name, response in known.items()}
     for _ in range(MAX_STEPS):
-        reached = {
-            task.name: min(best[task.name], bound.latest(index, ready, best)) for index, task in enumerate(ready.tasks)
-        }
+        reached = {task.name: min(best[task.name], bound.latest(index, ready, best)) for index, task in enumerate(ready.tasks)}
         if reached == best:
             break
         best = reached
