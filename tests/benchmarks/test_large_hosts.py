@@ -1,10 +1,10 @@
 """Hosts with hundreds of callbacks: the analysis takes as many steps for each of them, whatever their number is."""
 
 import pytest
+from hosts import CHAINS, large_host
 
 from amalthea_uros.analyze.response_times.task import Supply
 from amalthea_uros.analyze.system import analyze_system
-from hosts import CHAINS, large_host
 
 
 @pytest.fixture

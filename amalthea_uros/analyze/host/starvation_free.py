@@ -44,7 +44,7 @@ class ReadySet:
         return task.events.eta_plus(known[task.name]) + (1 if other < index or not self.is_ordered else 0)
 
 
-class Bound(Protocol):
+class PendingBound(Protocol):
     """A method: the response time of the callback at an index, which is not above the known one."""
 
     METHOD: str
@@ -53,7 +53,7 @@ class Bound(Protocol):
         """The response time of a callback if those of all are known."""
 
 
-def improved(bound: Bound, ready: ReadySet, known: Mapping[str, Response]) -> Mapping[str, Response]:
+def improved(bound: PendingBound, ready: ReadySet, known: Mapping[str, Response]) -> Mapping[str, Response]:
     """The response times of all callbacks of an executor, each the smaller one of a known bound and this one.
 
     Parameters
