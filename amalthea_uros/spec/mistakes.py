@@ -34,7 +34,7 @@ _SYNONYMS = {
     "cycle_time": ("period",),
 }
 
-#: What a description has no place for, and what to do instead.
+#: Keys that a description has no place for, with the alternative.
 _REFUSED = {
     "controllers": "A description has one controller. Write a file for each of them, each with the whole host, and state what "
     "the other controllers send as 'topics' of the host, with 'rate' and 'jitter'.",
