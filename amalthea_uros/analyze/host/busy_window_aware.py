@@ -1,4 +1,4 @@
-"""The calls of the other callbacks in a busy window: for all that is released before a callback is, and at polling points until its call.
+"""The calls of the other callbacks in a busy window: for what is released before a callback is, and at polling points from then on.
 
 After T. Blass et al., RTSS 2021 (see `starvation_free`), the busy-window-aware analysis. If a job is released `a` after the begin of
 a busy window, each other callback is called for what is released up to `a`, and then once for each polling point at most.

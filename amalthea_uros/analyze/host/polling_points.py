@@ -1,4 +1,4 @@
-"""The calls of the other callbacks at the polling points while a callback is pending (T. Blass et al., RTSS 2021; see `starvation_free`)."""
+"""The calls of the other callbacks at the polling points while one is pending (T. Blass et al., RTSS 2021; see `starvation_free`)."""
 
 from __future__ import annotations
 
