@@ -213,6 +213,11 @@ def test_several_publishers_of_the_host_send_what_the_controller_gets():
     [
         ("policy: fifo, priority: 80, core: 0", "core: 0", "the policy 'other'"),
         ("policy: fifo, priority: 20, core: 0", "policy: deadline, budget: 2 ms, period: 10 ms", "the reservation of 'log'"),
+        (
+            "log, thread: {policy: fifo, priority: 20,",
+            "log, type: multi-threaded, threads: 2, thread: {policy: deadline, budget: 2 ms, period: 10 ms,",
+            "the reservations of the multi-threaded executor 'log'",
+        ),
         ("  latency: {min: 50 us, max: 400 us}\n", "", "the latency of the topic 'odom'"),
         ("topic: odom, depth", "topic: scan, depth", "publishes 'scan'"),
     ],

@@ -108,6 +108,23 @@ def test_each_thread_of_a_multi_threaded_executor_has_a_reservation_of_its_own()
         ("to_host: {min: 0.2 ms, max: 2 ms}, ", "", "'to_host' of the agent is not stated"),
         ("topic: odom, depth", "topic: scan, depth", "publishes 'scan'"),
         ("{min: 1 ms, max: 3 ms}", "30 ms", "overload"),
+        (
+            "control, thread: {policy: fifo, priority: 80,",
+            "control, type: multi-threaded, threads: 2, thread: {policy: deadline, budget: 5 ms, period: 10 ms,",
+            "no published method covers the reservation of the multi-threaded executor",
+        ),
+        (
+            "{policy: fifo, priority: 80, core: 0}}\n    - {name: log, thread: {policy: fifo, priority: 20, core: 0}",
+            "{policy: deadline, budget: 6 ms, period: 10 ms, core: 0}}\n"
+            "    - {name: log, thread: {policy: deadline, budget: 5 ms, period: 10 ms, core: 0}",
+            "more reservations than cores",
+        ),
+        (
+            "{policy: fifo, priority: 80, core: 0}}\n    - {name: log, thread: {policy: fifo, priority: 20, core: 0}",
+            "{policy: deadline, budget: 3 ms, period: 10 ms, cores: [0, 1]}}\n"
+            "    - {name: log, thread: {policy: deadline, budget: 3 ms, period: 10 ms, core: 0}",
+            "shares some of its cores",
+        ),
     ],
 )
 def test_what_is_not_stated_leaves_the_executor_unknown(old, new, reason):

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros.analyze.host import starvation_free
+from amalthea_uros.analyze.host import busy_window_aware, polling_points
 from amalthea_uros.analyze.host.findings import add_findings
 from amalthea_uros.analyze.host.multi_threaded import in_groups
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.results import HostResults
+from amalthea_uros.analyze.host.starvation_free import ReadySet, improved
 from amalthea_uros.analyze.host.topics import HostTopics
 from amalthea_uros.analyze.response_times import edf, non_preemptive
 from amalthea_uros.analyze.response_times.busy_window import Interference
@@ -47,8 +48,8 @@ def _result(executor: HostExecutor, host: Host, releases: HostReleases) -> Execu
 def _responses(executor: HostExecutor, host: Host, releases: HostReleases) -> dict[str, Response]:
     """The response times of all callbacks, from their own release."""
     known = {callback.name: _from_release(callback, releases) for callback in executor.callbacks}
-    for improved in _improved(executor, host, releases, known):
-        for name, response in improved.items():
+    for responses in _improved(executor, host, releases, known):
+        for name, response in responses.items():
             if response.worst is not None and response.worst < (known[name].worst or 0):
                 known[name] = replace(response, claim=Claim.BOUND)
     return known
@@ -76,7 +77,9 @@ def _improved(
             ranks = {each.name: executor.rank(each, host.release) for each in executor.callbacks}
             return [_non_preemptive(tasks, ranks)]
     if is_batch and not higher:
-        return [dict(starvation_free.improved(tasks, known, _is_order_known(executor, host.release), supply))]
+        ready = ReadySet(tasks, _is_order_known(executor, host.release), supply)
+        first = improved(polling_points, ready, known)
+        return [dict(first), dict(improved(busy_window_aware, ready, first))]
     if executor.kind is HostExecutorKind.EVENTS:
         preempting = Interference.of(higher, supply)
         return [{task.name: edf.response_time(task, _others(task, tasks), preempting, method=_FIFO) for task in tasks}]

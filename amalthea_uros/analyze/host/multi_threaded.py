@@ -105,6 +105,8 @@ class SharedThreads:
         return responses
 
     def _as_chains(self) -> dict[str, Response]:
+        if self.preempting:
+            raise UnknownError(f"other threads can preempt those of {self.executor.name!r}")
         if self.cores < self.executor.threads:
             raise UnknownError(f"{self.executor.name!r} has more threads than cores, which no published method covers")
         passed = {each.name for route in self.routes for each in route[:-1]}

@@ -1,5 +1,7 @@
 """Executors of several threads whose callbacks exclude each other in groups: examples computed by hand."""
 
+from dataclasses import replace
+
 import pytest
 from random_hosts import Callback, multi_threaded_system_of
 
@@ -44,3 +46,13 @@ def test_members_of_a_group_can_starve_if_there_are_more_groups_than_threads(thr
     found, reason = worst(rules, threads)
     assert found["D"] == (410 if is_known else None)
     assert ("starve" in reason) is not is_known
+
+
+def test_one_thread_waits_for_those_of_higher_priority_on_its_core():
+    """A needs 2, and H of the other executor, which takes the core first, 12."""
+    system = multi_threaded_system_of([Callback("A", 2, 2, 50)], {"A": "g"}, {}, [], 1, RosRelease.HUMBLE)
+    (executor,) = system.host.executors
+    (callback,) = multi_threaded_system_of([Callback("H", 12, 12, 60)], {"H": "h"}, {}, [], 1, RosRelease.HUMBLE).host.callbacks
+    higher = replace(executor, name="higher", thread=replace(executor.thread, priority=2), callbacks=(callback,))
+    low, _ = analyze_system(replace(system, host=replace(system.host, executors=(executor, higher)))).host
+    assert low.handles["A"].response.worst == 12 + 2

@@ -4,6 +4,7 @@ from random import Random
 
 import pytest
 from effort import every
+from opponent.hunt_hosts import hunt
 from played_groups import Executor
 from played_groups import play as play_groups
 from played_host import Thread, play
@@ -47,6 +48,15 @@ def test_no_schedule_of_several_threads_exceeds_a_bound(seed):
         executor = Executor(callbacks, groups, threads, release is RosRelease.JAZZY, phases(random, callbacks))
         outside = {topic: arrivals(random, *rule, 1500) for topic, rule in sources.items()}
         check(analysis, paths, *play_groups(executor, outside, 1500, random))
+
+
+@pytest.mark.parametrize("seed", every(12, [seed for seed in range(9 * 30) if seed % 9 > 6]))
+def test_nothing_exceeds_a_bound_with_all_kinds_and_policies_together(seed):
+    """Threads of several policies on several cores, with services, variables, shared topics and short queues."""
+    found = hunt(seed)
+    assert found.rules.startswith("all together")
+    assert found.ratios
+    assert not found.false
 
 
 def test_most_bounds_are_known():
