@@ -99,7 +99,7 @@ def _policies(task: am.Task) -> dict[str, str]:
 def add_details(model: ProjectObject, details: AmaltheaDetails) -> None:
     """Complete a project: ports with their widths, connections, caches, callback servers."""
     holders = {item.name: item for cpu in model["cpus"] for item in (*cpu["cores"], *cpu["memories"], *cpu["interconnects"])}
-    holders |= {item.name: item for item in model["memories"]}
+    holders |= {item.name: item for item in (*model["memories"], *model["interconnects"])}
     ports: dict[Any, ProjectObject] = {}
     for module in details.modules:
         if (holder := holders.get(module.name or "")) is not None:
@@ -123,14 +123,15 @@ def _add_ports(holder: ProjectObject, module: Any, ports: dict[Any, ProjectObjec
         role = {_INITIATOR: "initiator", _RESPONDER: "responder"}.get(port.port_type)
         if role is None or (not is_handler and role not in _roles(holder)):
             continue
-        # The port of a core or memory is there already, and interconnects may refer to it.
-        made = ProjectObject(f"memory.{role.capitalize()}Port") if is_handler else holder[role]
+        # Of a core or memory there is one port, which the others are, too.
+        made = (None if is_handler else holder[role]) or ProjectObject(f"memory.{role.capitalize()}Port")
         made["name"] = port.name or role
         if role == "initiator" and port.priority:
             made["priority"] = port.priority
         if is_handler:
             holder.add(f"{role}s", made)
         else:
+            holder[role] = made
             # The importer takes the bits of AMALTHEA for bytes here.
             holder["bitWidth"] = ProjectObject("DataSize", value=port.bit_width or 0, unit="B")
         ports[port] = made

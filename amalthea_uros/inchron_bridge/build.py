@@ -16,7 +16,7 @@ from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.orders import keep_orders
 from amalthea_uros.inchron_bridge.basics.seals import seal_all
 from amalthea_uros.inchron_bridge.tables.chains import build_chains
-from amalthea_uros.inchron_bridge.tables.hardware import build_hardware, leave_out_memories
+from amalthea_uros.inchron_bridge.tables.hardware import build_hardware, connect_hardware, leave_out_memories
 from amalthea_uros.inchron_bridge.tables.hardware_back import HARDWARE, extract_hardware
 from amalthea_uros.inchron_bridge.tables.os import build_systems
 from amalthea_uros.inchron_bridge.tables.requirements import build_requirements
@@ -75,6 +75,8 @@ def build_project(
     build_graphs(context)
     assign_owners(context)
     add_details(context.model, details)
+    if not details.handlers:
+        connect_hardware(context)
     build_chains(context)
     build_requirements(context)
     _keep_middleware(context)

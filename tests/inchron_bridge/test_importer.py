@@ -8,6 +8,7 @@ from iprx_facts import VECTORS, differences, facts_of
 from support import ROOT, model_text
 
 from amalthea_uros.services.export import export
+from amalthea_uros.services.subject import open_system
 
 PAGE = (ROOT / "docs" / "inchron.md").read_text(encoding="utf-8")
 #: What the importer leaves out: patterns of facts that only we write, each with the reason.
@@ -59,14 +60,38 @@ def test_the_page_lists_what_differs():
     assert sorted(rows) == sorted(row for row, _ in CHANGED.values())
 
 
-#: A runnable with a condition and a schedule point.
+def exported(model, tmp_path):
+    """The facts of the project of a model."""
+    (tmp_path / "model.amxmi").write_text(model_text(model))
+    return facts_of(export(tmp_path / "model.amxmi", tmp_path / "project.iprx").text)
+
+
+def outline(entries):
+    """The names of entries of a call graph and of what is in them."""
+    return [
+        (entry.get("name"), [call["name"] for call in entry["calls"]])
+        if entry["class"] == "CallSequence" and "calls" in entry
+        else (entry.get("name"), *(outline(each.get("graphEntries", ())) for each in entry.get("entries", [entry])))
+        for entry in entries
+    ]
+
+
+#: A runnable with a condition, a schedule point, and a loop and switches with conditions of their own; the task of a conditional stimulus.
 CONDITIONED = """\
 <swModel>
+  <tasks name="T" stimuli="S?type=SingleStimulus"/>
   <runnables name="R">
     <activityGraph>
       <items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="5"/></items>
-      <items xsi:type="am:SchedulePoint"/>
-      <items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="7"/></items>
+      <items xsi:type="am:Switch">
+        <entries name="outer">
+          <items xsi:type="am:WhileLoop">
+            <items xsi:type="am:SchedulePoint"/>
+            <condition><entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="1"/></condition>
+          </items>
+          <condition><entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="2"/></condition>
+        </entries>
+      </items>
     </activityGraph>
     <executionCondition>
       <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="3"/>
@@ -75,15 +100,68 @@ CONDITIONED = """\
   <modes xsi:type="am:NumericMode" name="M"/>
   <modeLabels name="L" mode="M?type=NumericMode" initialValue="0"/>
 </swModel>
+<stimuliModel>
+  <stimuli xsi:type="am:SingleStimulus" name="S">
+    <executionCondition>
+      <entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="EQUAL" value="4"/>
+    </executionCondition>
+    <occurrence value="1" unit="ms"/>
+  </stimuli>
+</stimuliModel>
 """
 
 
-def test_points_are_counted_with_the_conditions_of_the_model(tmp_path):
-    (tmp_path / "model.amxmi").write_text(model_text(CONDITIONED))
-    model = facts_of(export(tmp_path / "model.amxmi", tmp_path / "project.iprx").text)
-    ((condition,), (conjunction,)) = model["globalConditions"], model["globalConditions"][0]["conjunctions"]
-    assert condition["name"] == "Condition_0"
-    assert [(each["value"], each["constant"]) for each in conjunction["expressions"]] == [("L", 3)]
+def test_points_and_conditions_are_counted_in_the_order_of_the_metamodel(tmp_path):
+    """Contents before conditions, and the software before the stimuli: the importer counts objects when it reaches them."""
+    model = exported(CONDITIONED, tmp_path)
+    constants = {each["name"]: each["conjunctions"][0]["expressions"][0]["constant"] for each in model["globalConditions"]}
+    assert constants == {"Condition_1": 1, "Condition_2": 2, "Condition_3": 3, "Condition_4": 4}
     (function,) = model["systems"][0]["components"][0]["functions"]
-    (sequence,) = function["callGraph"]["graphEntries"]
-    assert [call["name"] for call in sequence["calls"]] == ["Tick_0", "SchedulePoint_1", "Tick_1"]
+    assert outline(function["callGraph"]["graphEntries"]) == [
+        ("CallSequence_0", ["Tick_0"]),
+        # The first sequence of a loop has no name.
+        ("Switch_1", [("WhileLoop", [(None, ["SchedulePoint_0"])])]),
+    ]
+
+
+#: Groups within groups, of which one may not be interrupted, and one is empty.
+GROUPS = """\
+<swModel>
+  <runnables name="R">
+    <activityGraph>
+      <items xsi:type="am:Group" name="A" interruptible="false">
+        <items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="1"/></items>
+        <items xsi:type="am:Group" name="B">
+          <items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="2"/></items>
+        </items>
+      </items>
+      <items xsi:type="am:Group" name="C"/>
+      <items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="3"/></items>
+      <items xsi:type="am:Group" name="D">
+        <items xsi:type="am:Group" name="E">
+          <items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="4"/></items>
+        </items>
+      </items>
+      <items xsi:type="am:Ticks"><default xsi:type="am:DiscreteValueConstant" value="5"/></items>
+    </activityGraph>
+  </runnables>
+</swModel>
+"""
+
+
+def test_groups_within_groups_are_sequences_beside_them(tmp_path):
+    """A sequence is begun after each group; of those without an entry, the ones at the end of a group stay."""
+    (function,) = exported(GROUPS, tmp_path)["systems"][0]["components"][0]["functions"]
+    assert outline(function["callGraph"]["graphEntries"]) == [
+        ("A", ["ImplicitSuspend_A", "Tick_0"]),
+        ("B", ["Tick_1"]),
+        ("CallSequence_1", ["ImplicitResume_A"]),
+        ("C", []),
+        ("CallSequence_3", ["Tick_2"]),
+        ("D", []),
+        ("E", ["Tick_3"]),
+        ("CallSequence_4", []),
+        ("CallSequence_5", ["Tick_4"]),
+    ]
+    first, second = (open_system(tmp_path / name).system.runnables["R"] for name in ("model.amxmi", "project.iprx"))
+    assert first.activities == second.activities

@@ -115,64 +115,77 @@ class _Graph:
     Attributes
     ----------
     number : of the next item of a call sequence
+    of_groups : sequences that stand for groups, also if they are empty
     """
 
     def __init__(self, context: Exporting) -> None:
         self.context = context
         self.number = 0
+        self.of_groups: set[ProjectObject] = set()
 
     def entries(self, activities: tuple[perf.Activity, ...]) -> list[ProjectObject]:
-        """The entries for activities; sequences are cut where there is a branch, a loop or a group."""
-        result = [next_entry("CallSequence", self.context)]
+        """The entries for activities."""
+        result = self.parts(activities, next_entry("CallSequence", self.context))
+        return result[:-1] if self.is_unused(result[-1]) else result
+
+    def parts(self, activities: tuple[perf.Activity, ...], first: ProjectObject) -> list[ProjectObject]:
+        """The entries for activities; sequences are cut where there is a branch, a loop or a group, as the importer of INCHRON does.
+
+        Parameters
+        ----------
+        first : the sequence that they begin with
+        """
+        result = [first]
         for activity in activities:
             match activity:
                 case perf.Group():
-                    result += self.group(activity)
+                    made = self.group(activity)
                 case perf.Switch():
-                    result.append(self.switch(activity))
+                    made = [self.switch(activity)]
                 case perf.ProbabilitySwitch():
-                    result.append(self.probability_switch(activity))
+                    made = [self.probability_switch(activity)]
                 case perf.Loop():
-                    result.append(self.loop(activity))
+                    made = [self.loop(activity)]
                 case _:
                     for item in self.items(activity):
                         result[-1].add("calls", item)
                     continue
-            result.append(next_entry("CallSequence", self.context))
-        return [entry for entry in result if entry.kind != "CallSequence" or entry["calls"]]
+            if self.is_unused(result[-1]):
+                result.pop()
+            result += [*made, next_entry("CallSequence", self.context)]
+        return result
+
+    def is_unused(self, entry: ProjectObject) -> bool:
+        """Whether an entry is an empty sequence that stands for no group."""
+        return entry.kind == "CallSequence" and not entry["calls"] and entry not in self.of_groups
 
     def group(self, group: perf.Group) -> list[ProjectObject]:
-        """A sequence with the name of the group, and one beside it for each group within it, as sequences cannot be nested."""
+        """A sequence with the name of the group; what is in it stands beside it from the first branch on, as sequences cannot be nested."""
         context = self.context
         if not group.ordered:
             context.lost(group, "a group without an order", "its activities are in the order in which they are stated")
-        is_simple = not any(isinstance(each, perf.WITH_PARTS) for each in group.activities)
-        if is_simple:
-            result = [ProjectObject("CallSequence", name=group.name)]
-            for activity in group.activities:
-                for item in self.items(activity):
-                    result[0].add("calls", item)
-        else:
-            result = self.entries(group.activities) or [next_entry("CallSequence", context)]
+        first = ProjectObject("CallSequence", name=group.name)
+        self.of_groups.add(first)
+        result = self.parts(group.activities, first)
+        if len(result) > 1:
             context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
         if not group.interruptible:
-            _enclose(result, group.name, context)
-        if not (is_simple and group.ordered and group.name):
-            keep_whole(result[0], GROUP, group)
-            note(result[0], span=len(result))
+            _enclose(result, group.name)
+        if not (len(result) == 1 and group.ordered and group.name):
+            keep_whole(first, GROUP, group)
+            note(first, span=len(result))
         return result
 
     def switch(self, switch: perf.Switch) -> ProjectObject:
-        """The first case whose condition holds."""
+        """The first case whose condition holds; the conditions are numbered after those in their branches."""
         made = next_entry("Switch", self.context)
         made["evaluateConditionsOnEntry"] = True
         for number, case in enumerate(switch.cases):
-            condition = build_condition(case.condition, self.context, case)
-            entry = ProjectObject("SwitchEntry", name=f"SwitchEntry_{number}", condition=condition)
+            entry = ProjectObject("SwitchEntry", name=f"SwitchEntry_{number}", graphEntries=self.entries(case.activities))
+            entry["condition"] = build_condition(case.condition, self.context, case)
             if case.name:
                 note(entry, name=case.name)
             made.add("entries", entry)
-            entry["graphEntries"] = self.entries(case.activities)
         if switch.default is not None:
             made["defaultEntry"] = ProjectObject("SwitchDefault", graphEntries=self.entries(switch.default))
         return made
@@ -188,12 +201,13 @@ class _Graph:
         return made
 
     def loop(self, loop: perf.Loop) -> ProjectObject:
-        """Repeated while the condition holds."""
+        """Repeated while the condition holds; the importer of INCHRON gives no name to its first sequence."""
+        first = ProjectObject("CallSequence")
+        result = self.parts(loop.activities, first)
         made = ProjectObject("WhileLoop", name="WhileLoop")
+        made["graphEntries"] = (result[:-1] if self.is_unused(result[-1]) else result) or [first]
         if loop.condition is not None:
             made["condition"] = build_condition(loop.condition, self.context, loop)
-        entries = self.entries(loop.activities)
-        made["graphEntries"] = entries or [next_entry("CallSequence", self.context)]
         return made
 
     def items(self, activity: perf.Activity) -> Iterator[ProjectObject]:
@@ -307,12 +321,8 @@ class _Graph:
         return item
 
 
-def _enclose(entries: list[ProjectObject], name: str, context: Exporting) -> None:
-    """Suspend interrupts before the entries and resume them after; branches need sequences of their own for that."""
-    for place, kind in ((0, "Suspend"), (-1, "Resume")):
-        if entries[place].kind != "CallSequence":
-            entries.insert(0 if place == 0 else len(entries), next_entry("CallSequence", context))
-        item = ProjectObject(f"{kind}AllInterrupts", name=f"Implicit{kind}_{name}")
-        item.owner = entries[place]
-        calls = entries[place].values.setdefault("calls", [])
-        calls.insert(0 if place == 0 else len(calls), item)
+def _enclose(sequences: list[ProjectObject], name: str) -> None:
+    """Suspend interrupts at the beginning of the first sequence and resume them at the end of the last one."""
+    first, last = (ProjectObject(f"{kind}AllInterrupts", name=f"Implicit{kind}_{name}") for kind in ("Suspend", "Resume"))
+    sequences[0]["calls"] = [first, *sequences[0]["calls"]]
+    sequences[-1].add("calls", last)

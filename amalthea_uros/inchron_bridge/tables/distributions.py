@@ -46,12 +46,13 @@ def _build(value: Any, unit: Callable[[int], ProjectObject], context: Exporting,
         case perf.Uniform(lower=lower, upper=upper):
             made = {"type": "Uniform", "min": unit(lower), "max": unit(upper)}
         case perf.Statistics(lower=lower, average=average, upper=upper):
-            sigma = max(average - lower, upper - average) / 3
+            mean = whole_part(average)
+            sigma = max(mean - lower, upper - mean) / 3
             made = {
                 "type": "Normal",
                 "min": unit(lower),
                 "max": unit(upper),
-                "mean": unit(whole_part(average)),
+                "mean": unit(mean),
                 "sigma": unit(whole_part(sigma)),
             }
             context.changed(

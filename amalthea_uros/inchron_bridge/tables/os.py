@@ -73,11 +73,11 @@ class _SystemBuilder:
         self.root[_CORES] = self.root_cores()
 
     def root_cores(self) -> list[ProjectObject]:
-        """The cores of those that have interrupt service routines, and of the schedulers."""
+        """The cores of the controllers that have interrupt service routines; if they have none, those of the schedulers below."""
         used = {allocation.controller for allocation in self.context.system.mapping.isrs}
-        controllers = [each for each in self.system.interrupt_controllers if each.name in used]
-        result = [self.cores(each) for each in controllers] + [self.cores(each) for each in self.system.schedulers]
-        return list(dict.fromkeys(core for cores in result for core in cores))
+        controllers = [each for each in self.system.interrupt_controllers if each.name in used and each.cores]
+        below = [each for each in self.system.schedulers if each.parent is None]
+        return list(dict.fromkeys(core for each in controllers or below for core in self.cores(each)))
 
     def scheduler(self, scheduler: perf.Scheduler) -> ProjectObject:
         """A scheduler with its policy."""

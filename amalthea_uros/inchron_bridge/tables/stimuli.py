@@ -210,7 +210,7 @@ def add_activations(process: Any, context: Exporting) -> None:
         if holder is None or stimulus is None:
             context.need("Stimulus", name, process.name)
             continue
-        feature = "callGraph" if holder.kind == "ActivationConnection" else "targets"
+        feature = _feature(holder)
         if feature not in holder.values:
             holder[feature] = ProjectObject("CallGraph")
         item = ProjectObject(
@@ -231,8 +231,21 @@ def _sequence(graph: ProjectObject, stimulus: perf.Stimulus, context: Exporting)
         return graph.add("graphEntries", next_entry("CallSequence", context))
     switch = next_entry("Switch", context)
     switch["evaluateConditionsOnEntry"] = True
-    condition = build_condition(stimulus.condition, context, stimulus)
-    entry = ProjectObject("SwitchEntry", name="SwitchEntry_0", condition=condition)
-    switch.add("entries", entry)
+    entry = switch.add("entries", ProjectObject("SwitchEntry", name="SwitchEntry_0"))
     graph.add("graphEntries", switch)
     return entry.add("graphEntries", next_entry("CallSequence", context))
+
+
+def add_conditions(context: Exporting) -> None:
+    """Make the conditions of stimuli, which are numbered after those of the software, also of stimuli that activate nothing."""
+    for stimulus in context.system.stimuli.stimuli:
+        if stimulus.condition is not None:
+            condition = build_condition(stimulus.condition, context, stimulus)
+            holder = context.need("Stimulus", stimulus.name, stimulus.name)
+            for switch in holder[_feature(holder)]["graphEntries"] if _feature(holder) in holder.values else ():
+                switch["entries"][0]["condition"] = condition
+
+
+def _feature(holder: ProjectObject) -> str:
+    """What a generator or connection activates."""
+    return "callGraph" if holder.kind == "ActivationConnection" else "targets"
