@@ -52,6 +52,7 @@ def export(
     *,
     mapping: StrPath | None = None,
     with_memories: bool = True,
+    like_importer: bool = False,
     write: bool = True,
 ) -> ExportedModel:
     """Write models, or an `app.yaml`, as an INCHRON project; and a project, if that is given, as an AMALTHEA model.
@@ -62,6 +63,7 @@ def export(
     ids : the namespace of the ids of a project
     mapping : a file to write that says which object of an AMALTHEA model became which of the project
     with_memories : whether a project has memories, and what connects them
+    like_importer : whether a project also has the errors of INCHRON's importer, to compare it with one of the importer
     write : whether the files are written
 
     Raises
@@ -83,7 +85,8 @@ def export(
             texts = {target: _model_text(opened)}
         else:
             built = _project(opened, with_memories=with_memories)
-            texts, findings = {target: project_text(built.model, ids)}, built.findings
+            findings = (*built.findings, *(_imitate(opened, built.model) if like_importer else ()))
+            texts = {target: project_text(built.model, ids)}
             if mapping is not None:
                 texts[Path(mapping)] = _mapping_text(opened, built.model, ids, target)
     if write:
@@ -98,6 +101,13 @@ def _project(opened: SystemInput, *, with_memories: bool) -> ProjectBuild:
 
     details = details_of(opened.model) if opened.model is not None else None
     return build_project(opened.system, details, iterations_of(opened.system), with_memories=with_memories)
+
+
+def _imitate(opened: SystemInput, project: ProjectObject) -> tuple[Finding, ...]:
+    from amalthea_uros.inchron_bridge.imitation import imitate
+
+    versions = [document.file_version for document in opened.model.documents] if opened.model is not None else []
+    return imitate(project, with_relations="1.2.0" in versions)
 
 
 def _mapping_text(opened: SystemInput, project: ProjectObject, ids: UUID, target: Path) -> str:

@@ -92,6 +92,7 @@ _CALLS = Codec(
 
 # Activities
 
+_LABEL = reference(ObjectKind.DATA)
 _ACCESSES_OF_LABELS = (am.LabelAccess, am.SenderReceiverCommunication)
 #: What takes time, or may wait, so that it must not disappear if it is incomplete.
 _TAKING_TIME = (
@@ -130,6 +131,8 @@ class _Activities(ClassTable):
                 return _build_communication(item, context)
             case perf.ServerCall():
                 return _build_server_call(item, context)
+            case perf.Incomplete(label=str(label)):
+                return am.LabelAccess(data=_LABEL.build(label, context))
             case perf.Incomplete(reason=reason, is_access=is_access):
                 return am.Group(name=_ACCESS if is_access else None, custom_properties=build_reason(reason))
         return super().build(item, context)
@@ -141,6 +144,7 @@ class _Activities(ClassTable):
         return perf.Incomplete(
             reason=f"an incomplete {type(element).__name__}",
             is_access=isinstance(element, _ACCESSES_OF_LABELS),
+            label=_LABEL.extract(element.data, context, element) if type(element) is am.LabelAccess else None,
             locate=partial(context.location, element),
         )
 
@@ -325,7 +329,7 @@ ACTIVITIES: ClassTable = _Activities(
     ClassEntry(
         perf.LabelAccess,
         am.LabelAccess,
-        label=("data", reference(ObjectKind.DATA)),
+        label=("data", _LABEL),
         kind=("access", same_names(perf.AccessKind, am.LabelAccessEnum)),
         communication=(
             "implementation",

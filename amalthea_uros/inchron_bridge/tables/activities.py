@@ -252,6 +252,12 @@ class _Graph:
                 item.add("dataAccess", data_access(label, kind, context))
                 context.keep(item, activity, "communication", "protection", "times")
                 yield item
+            case perf.Incomplete(label=str(label)):
+                context.changed(activity, "an access of unknown kind", "as a read, as the importer of INCHRON takes it")
+                item = ProjectObject("ResourceConsumption", name=self.named("LabelAccess_{label}", activity))
+                item.add("dataAccess", data_access(label, perf.AccessKind.READ, context))
+                keep_whole(item, ACTIVITY, activity)
+                yield item
             case perf.ServerCall(kind=call):
                 pattern, row = SERVER_CALLS[call]
                 more = {"blockingType": "NonBlocking"} if call is perf.ServerCallKind.GET_RESULT and not activity.waits else {}

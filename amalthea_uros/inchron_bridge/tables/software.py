@@ -13,7 +13,7 @@ from amalthea_uros.inchron_bridge.tables.os import GLOBAL, global_system
 from amalthea_uros.inchron_bridge.tables.rows import Row
 from amalthea_uros.inchron_bridge.tables.stimuli import add_activations, add_conditions
 from amalthea_uros.perf import software as perf
-from amalthea_uros.perf.activities import LabelAccess, SenderReceiverAccess, called_runnables, walk
+from amalthea_uros.perf.activities import Incomplete, LabelAccess, SenderReceiverAccess, called_runnables, walk
 from amalthea_uros.perf.os import Semaphore
 
 #: The trace events of each kind of object, with their types where they differ from the names.
@@ -163,7 +163,7 @@ def _owners(context: Exporting) -> dict[tuple[str, str], ProjectObject]:
         for activity in walk(body):
             for event in getattr(activity, "events", ()):
                 result.setdefault(("Event", event), os)
-            if isinstance(activity, LabelAccess | SenderReceiverAccess):
+            if isinstance(activity, LabelAccess | SenderReceiverAccess | Incomplete) and activity.label is not None:
                 result.setdefault(("DataObject", activity.label), os)
         for name in called_runnables(body):
             if name in system.runnables and ("Function", name) not in result:
