@@ -11,22 +11,23 @@ from amalthea_uros.inchron_bridge.tables.requirements import CHAIN_REQUIREMENT
 from amalthea_uros.inchron_bridge.tables.stimuli import GENERATOR
 
 
-def imitate(model: ProjectObject, *, with_relations: bool) -> tuple[Finding, ...]:
-    """Change a project to what the importer writes where it does not write what the model says; returns what was changed.
+def imitate(model: ProjectObject, version: str) -> tuple[Finding, ...]:
+    """Change a project to what the importer writes of a model of an AMALTHEA version where that is not what the model says.
 
-    Parameters
-    ----------
-    with_relations : whether the importer honours relations, as it does in models of AMALTHEA 1.2.0
+    Returns
+    -------
+    The changes.
     """
-    found = Counter(filter(None, (_imitated(item, with_relations) for item in model.walk())))
+    with_relations = version == "1.2.0"
+    changes = Counter(filter(None, (_imitated(item, with_relations) for item in model.walk())))
     return tuple(
         Finding("INC010", Severity.WARNING, f"{what}, as INCHRON's importer writes it ({number} times)")
-        for what, number in found.items()
+        for what, number in changes.items()
     )
 
 
 def _imitated(item: ProjectObject, with_relations: bool) -> str | None:
-    """What was changed of an object (am2inc, activityGraph.cpp, swModel.cpp, stimuliModel.cpp and constraintsModel.cpp)."""
+    """The change of an object, None if it stays (am2inc, activityGraph.cpp, swModel.cpp, stimuliModel.cpp and constraintsModel.cpp)."""
     match item.kind:
         case "TimeDistribution" if item["type"] == "Beta":
             item["type"] = "Max"

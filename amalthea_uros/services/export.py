@@ -84,9 +84,8 @@ def export(
         if is_model:
             texts = {target: _model_text(opened)}
         else:
-            built = _project(opened, with_memories=with_memories)
-            findings = (*built.findings, *(_imitate(opened, built.model) if like_importer else ()))
-            texts = {target: project_text(built.model, ids)}
+            built = _project(opened, with_memories=with_memories, like_importer=like_importer)
+            texts, findings = {target: project_text(built.model, ids)}, built.findings
             if mapping is not None:
                 texts[Path(mapping)] = _mapping_text(opened, built.model, ids, target)
     if write:
@@ -95,19 +94,20 @@ def export(
     return ExportedModel(paths=opened.paths, target=target, text=texts[target], findings=result)
 
 
-def _project(opened: SystemInput, *, with_memories: bool) -> ProjectBuild:
+def _project(opened: SystemInput, *, with_memories: bool, like_importer: bool) -> ProjectBuild:
     from amalthea_uros.inchron_bridge.amalthea import details_of
     from amalthea_uros.inchron_bridge.build import build_project
 
-    details = details_of(opened.model) if opened.model is not None else None
-    return build_project(opened.system, details, iterations_of(opened.system), with_memories=with_memories)
-
-
-def _imitate(opened: SystemInput, project: ProjectObject) -> tuple[Finding, ...]:
-    from amalthea_uros.inchron_bridge.imitation import imitate
-
-    versions = [document.file_version for document in opened.model.documents] if opened.model is not None else []
-    return imitate(project, with_relations="1.2.0" in versions)
+    model = opened.model
+    details = details_of(model) if model is not None else None
+    version = model.documents[0].file_version if model is not None else ""
+    return build_project(
+        opened.system,
+        details,
+        iterations_of(opened.system),
+        with_memories=with_memories,
+        like_importer_of=version if like_importer else None,
+    )
 
 
 def _mapping_text(opened: SystemInput, project: ProjectObject, ids: UUID, target: Path) -> str:

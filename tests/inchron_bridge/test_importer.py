@@ -114,7 +114,7 @@ def outline(entries):
     ]
 
 
-#: A runnable with a condition, a schedule point, and a loop and switches with conditions of their own; the task of a conditional stimulus.
+#: A runnable with a condition, and in it a loop and a switch with conditions of their own; the task of a conditional stimulus.
 CONDITIONED = """\
 <swModel>
   <tasks name="T" stimuli="S?type=SingleStimulus"/>
@@ -287,7 +287,7 @@ def test_a_bus_outside_of_processors_is_an_interconnect_of_the_model(tmp_path):
     assert [(each["name"], each["bitWidth"]["value"]) for each in model["interconnects"]] == [("Bus", 32)]
     assert not any("interconnects" in cpu for cpu in model["cpus"])
     (cache,) = next(cpu["memories"] for cpu in model["cpus"] if "memories" in cpu)
-    assert "initiator" not in cache and "responder" not in cache
+    assert not {"initiator", "responder"} & cache.keys()
 
 
 #: Two operating systems; the runnable R is used by a task of the second one, and by a runnable of the first one.

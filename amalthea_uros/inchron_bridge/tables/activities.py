@@ -21,7 +21,8 @@ ACTIVITY = "activity"
 #: And a group, in the comment of the first of the entries that stand for it.
 GROUP = "group"
 
-_ACCESSES = {perf.AccessKind.READ: "Read", perf.AccessKind.WRITE: "Write"}
+ACCESSES = {perf.AccessKind.READ: "Read", perf.AccessKind.WRITE: "Write"}
+MODIFICATIONS = {perf.ModeOperation(name.lower()): name for name in ("Set", "Increment", "Decrement")}
 _DATA_ACCESS = "memory.ExplicitDataAccess"
 
 
@@ -29,7 +30,7 @@ def data_access(label: str, kind: perf.AccessKind, context: Exporting) -> Projec
     """An access to a variable."""
     target = context.need("DataObject", label, context.holder)
     rate = ProjectObject("DataRate", value=0)
-    return ProjectObject(_DATA_ACCESS, accessType=_ACCESSES[kind], dataObject=target, bandwidth=rate)
+    return ProjectObject(_DATA_ACCESS, accessType=ACCESSES[kind], dataObject=target, bandwidth=rate)
 
 
 #: Activities that are one item of a call sequence each, with the beginnings of their names.
@@ -160,7 +161,7 @@ class _Graph:
         return entry.kind == "CallSequence" and not entry["calls"] and entry not in self.of_groups
 
     def group(self, group: perf.Group) -> list[ProjectObject]:
-        """A sequence with the name of the group; what is in it stands beside it from the first branch on, as sequences cannot be nested."""
+        """A sequence with the name of the group, and beside it what follows a branch in the group, as sequences cannot be nested."""
         context = self.context
         if not group.ordered:
             context.lost(group, "a group without an order", "its activities are in the order in which they are stated")
@@ -310,7 +311,7 @@ class _Graph:
             if mode is not None:
                 yield ProjectObject("ModeSwitchPoint", name=self.named("EnumModeLabelAccess", activity), mode=mode)
                 return
-        kind = {"set": "Set", "increment": "Increment", "decrement": "Decrement"}.get(activity.operation)
+        kind = MODIFICATIONS.get(activity.operation)
         value = whole_number(activity.value) if kind == "Set" else activity.step
         if counter is not None and kind and value is not None:
             name = self.named("NumericModeLabelAccess", activity)

@@ -14,7 +14,7 @@ from amalthea_uros.units import NANOSECOND, SECOND
 #: What the importer of INCHRON makes for stimuli: a clock without drift.
 IDEAL_CLOCK = "IdealClock"
 
-_BITS, _WIDE_BITS = 64, 256
+_NAME, _BITS, _WIDE_BITS = "New Project", 64, 256
 #: Nothing in a model names these; the importer gives them these names (am2inc, relax.cpp).
 _RESPONDER = "ResponderPort"
 
@@ -27,6 +27,8 @@ def build_hardware(context: Exporting, buses: frozenset[str]) -> None:
     buses : names of the interconnects that a project has; others are latencies only
     """
     system, model = context.system, context.model
+    names = [structure.name for structure in system.hardware.walk() if structure.kind is perf.StructureKind.SYSTEM]
+    model["name"] = names[-1] if names else _NAME
     for clock in system.hardware.clocks:
         if clock.frequency is None:
             context.changed(clock, "a clock without a frequency", "without one; tools may take 1 GHz for it")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
@@ -14,6 +15,7 @@ from amalthea_uros.perf import distributions
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import highest, lowest
+from amalthea_uros.units import Time
 
 SCENARIO = "DefaultScenario"
 
@@ -168,28 +170,37 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
 
 
 def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
-    """A substitute for a stimulus that a project cannot have: its highest rate, or nothing if that is unknown."""
-    span = context.iterations.get(stimulus.name)
-    rate = highest_rate(stimulus)
-    if span is not None:
-        shortest, longest = span
-        variation = _variation("Uniform", context, "", max=longest - shortest)
-        made = _random(stimulus.name, shortest, context, "", variation=variation, relative=True)
-        context.changed(
-            stimulus, "the iterations of an executor", "as activations between the shortest and the longest iteration"
-        )
-    elif rate is not None:
-        period, distance = rate
-        made = _random(stimulus.name, period, context, "", distance=distance)
-        context.changed(stimulus, type(stimulus).__name__, "as activations at the highest rate that lasts")
-    else:
-        made = _generator(LIST, stimulus.name, context)
-        context.lost(stimulus, type(stimulus).__name__, "nothing is activated there; only amuros reads it, in a comment")
+    """A stimulus that a project cannot have, as the one that comes closest, or nothing if that is unknown."""
+    closest, what, how = substitute(stimulus, context.iterations)
+    match closest:
+        case perf.RelativePeriodic():
+            made = _relative(closest, context)
+        case perf.Periodic():
+            made = _periodic(closest, context)
+        case _:
+            made = _generator(LIST, stimulus.name, context)
+            context.lost(stimulus, what, "nothing is activated there; only amuros reads it, in a comment")
+    if closest is not None:
+        context.changed(stimulus, what, how)
     keep_whole(made, STIMULUS, stimulus)
     return made
 
 
-def highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
+def substitute(stimulus: perf.Stimulus, iterations: Mapping[str, tuple[Time, Time]]) -> tuple[perf.Stimulus | None, str, str]:
+    """The stimulus that comes closest to one that INCHRON has not, None if it is unknown; and the words for the two."""
+    kind, known = type(stimulus).__name__, {"name": stimulus.name, "condition": stimulus.condition, "origin": stimulus.origin}
+    if stimulus.name in iterations:
+        shortest, longest = iterations[stimulus.name]
+        distance = distributions.Uniform(lower=shortest, upper=longest)
+        how = "as activations between the shortest and the longest iteration"
+        return perf.RelativePeriodic(**known, distance=distance), "the iterations of an executor", how  # type: ignore[arg-type]
+    if (rate := _highest_rate(stimulus)) is not None:
+        closest = perf.Periodic(**known, period=rate[0], min_distance=rate[1])  # type: ignore[arg-type]
+        return closest, kind, "as activations at the highest rate that lasts"
+    return None, kind, ""
+
+
+def _highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
     """The least period that lasts, and the least distance; None if they are unknown."""
     match stimulus:
         case perf.ArrivalCurve(points=points):
@@ -247,5 +258,5 @@ def add_conditions(context: Exporting) -> None:
 
 
 def _feature(holder: ProjectObject) -> str:
-    """What a generator or connection activates."""
+    """The feature of a generator or connection with its activations."""
     return "callGraph" if holder.kind == "ActivationConnection" else "targets"
