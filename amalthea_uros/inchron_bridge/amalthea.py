@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.inchron.facts import features
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -121,7 +122,7 @@ def _add_ports(holder: ProjectObject, module: Any, ports: dict[Any, ProjectObjec
     is_handler = holder.kind == "memory.Interconnect"
     for port in module.ports:
         role = {_INITIATOR: "initiator", _RESPONDER: "responder"}.get(port.port_type)
-        if role is None or (not is_handler and role not in _roles(holder)):
+        if role is None or (not is_handler and role not in features(holder.kind)):
             continue
         # Of a core or memory there is one port, which the others are, too.
         made = (None if is_handler else holder[role]) or ProjectObject(f"memory.{role.capitalize()}Port")
@@ -138,10 +139,6 @@ def _add_ports(holder: ProjectObject, module: Any, ports: dict[Any, ProjectObjec
     if is_handler and module.ports:
         most = max(port.bit_width or 0 for port in module.ports)
         holder["bitWidth"] = ProjectObject("DataSize", value=most, unit="bit")
-
-
-def _roles(holder: ProjectObject) -> set[str]:
-    return {"CpuCore": {"initiator"}, "memory.Memory": {"responder"}}.get(holder.kind, {"initiator", "responder"})
 
 
 def _complete_cache(holder: ProjectObject, definition: am.CacheDefinition) -> None:

@@ -22,6 +22,7 @@ ADDED = {
     r"/comment$": "a project has no place for it",
     r"/(memories|interconnects)\[\w+\]/clock$": "the metamodel demands a clock",
     r"^/requirements(\[\w+_response_time\])?$": "the importer drops requirements on processes and runnables",
+    r"^/eventChains$": "the importer drops chains with events without a type",
     r"/generators\[rounds_of_\w+\]$": "the importer drops the activations of executors",
     r"/graphEntries\[CallSequence_0\]/calls\[ModeAccess\]$": "the importer drops reads of modes",
 }

@@ -294,11 +294,8 @@ class _Graph:
             item = ProjectObject(kind, name=kind, event=self.context.need("Event", event, self.context.holder))
             if isinstance(activity, perf.ClearEvent):
                 item["reset"] = True
-            part = replace(activity, events=(event,))
-            if isinstance(activity, perf.SetEvent):
-                self.context.keep(item, part, "process")
-            elif isinstance(activity, perf.WaitEvent):
-                self.context.keep(item, part, "waiting")
+            kept = {perf.SetEvent: ("process",), perf.WaitEvent: ("waiting",)}.get(type(activity), ())
+            self.context.keep(item, replace(activity, events=(event,)), *kept)
             if number:
                 self.context.changed(activity, f"a {type(activity).__name__} with several events", "as one for each event")
             yield item

@@ -72,28 +72,20 @@ def _build_modes(context: Exporting) -> None:
         mode = modes.get(label.mode or "")
         if mode is None:
             context.lost(label, "a mode label without a mode")
-        elif mode.literals:
-            made = ProjectObject(
-                "ModeGroup", name=label.name, modes=[ProjectObject("Mode", name=each) for each in mode.literals]
-            )
-            first = next((each for each in made["modes"] if each.name == label.initial), None)
-            made["initialMode"] = first or made["modes"][0]
-            _keep_initial(made, label, is_known=first is not None, context=context)
-            context.model.add("globalModeGroups", context.register("ModeGroup", label.name, made))
-            note(made, mode=mode.name)
+            continue
+        if mode.literals:
+            literals = [ProjectObject("Mode", name=each) for each in mode.literals]
+            initial: Any = next((each for each in literals if each.name == label.initial), None)
+            made = ProjectObject("ModeGroup", name=label.name, modes=literals, initialMode=initial or literals[0])
         else:
-            number = whole_number(label.initial)
-            made = ProjectObject("Counter", name=label.name, initialValue=number or 0)
-            _keep_initial(made, label, is_known=number is not None, context=context)
-            context.model.add("globalCounters", context.register("Counter", label.name, made))
-            note(made, mode=mode.name)
-
-
-def _keep_initial(made: ProjectObject, label: perf.ModeLabel, *, is_known: bool, context: Exporting) -> None:
-    """A project always has an initial value; that it is unknown is not the same as the first one."""
-    if not is_known:
-        note(made, initial=label.initial)
-        context.changed(label, "a mode label without a valid initial value", "with the first one, or 0")
+            initial = whole_number(label.initial)
+            made = ProjectObject("Counter", name=label.name, initialValue=initial or 0)
+        if initial is None:
+            # A project always has an initial value; that it is unknown is not the same as the first one.
+            note(made, initial=label.initial)
+            context.changed(label, "a mode label without a valid initial value", "with the first one, or 0")
+        context.model.add(f"global{made.kind}s", context.register(made.kind, label.name, made))
+        note(made, mode=mode.name)
 
 
 def build_graphs(context: Exporting) -> None:
