@@ -116,18 +116,16 @@ class _Graph:
     Attributes
     ----------
     number : of the next item of a call sequence
-    of_groups : sequences that stand for groups, also if they are empty
     """
 
     def __init__(self, context: Exporting) -> None:
         self.context = context
         self.number = 0
-        self.of_groups: set[ProjectObject] = set()
 
     def entries(self, activities: tuple[perf.Activity, ...]) -> list[ProjectObject]:
         """The entries for activities."""
         result = self.parts(activities, next_entry("CallSequence", self.context))
-        return result[:-1] if self.is_unused(result[-1]) else result
+        return result[:-1] if _is_unused(result[-1]) else result
 
     def parts(self, activities: tuple[perf.Activity, ...], first: ProjectObject) -> list[ProjectObject]:
         """The entries for activities; sequences are cut where there is a branch, a loop or a group, as the importer of INCHRON does.
@@ -151,14 +149,10 @@ class _Graph:
                     for item in self.items(activity):
                         result[-1].add("calls", item)
                     continue
-            if self.is_unused(result[-1]):
+            if _is_unused(result[-1]):
                 result.pop()
             result += [*made, next_entry("CallSequence", self.context)]
         return result
-
-    def is_unused(self, entry: ProjectObject) -> bool:
-        """Whether an entry is an empty sequence that stands for no group."""
-        return entry.kind == "CallSequence" and not entry["calls"] and entry not in self.of_groups
 
     def group(self, group: perf.Group) -> list[ProjectObject]:
         """A sequence with the name of the group, and beside it what follows a branch in the group, as sequences cannot be nested."""
@@ -166,15 +160,16 @@ class _Graph:
         if not group.ordered:
             context.lost(group, "a group without an order", "its activities are in the order in which they are stated")
         first = ProjectObject("CallSequence", name=group.name)
-        self.of_groups.add(first)
-        result = self.parts(group.activities, first)
-        if len(result) > 1:
-            context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
         if not group.interruptible:
-            _enclose(result, group.name)
-        if not (len(result) == 1 and group.ordered and group.name):
-            keep_whole(first, GROUP, group)
-            note(first, span=len(result))
+            first.add("calls", ProjectObject("SuspendAllInterrupts", name=f"ImplicitSuspend_{group.name}"))
+        result = self.parts(group.activities, first)
+        if not group.interruptible:
+            result[-1].add("calls", ProjectObject("ResumeAllInterrupts", name=f"ImplicitResume_{group.name}"))
+        if result != [first]:
+            context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
+        if not (result == [first] and group.ordered and group.name):
+            keep_whole(result[0], GROUP, group)
+            note(result[0], span=len(result))
         return result
 
     def switch(self, switch: perf.Switch) -> ProjectObject:
@@ -206,7 +201,7 @@ class _Graph:
         first = ProjectObject("CallSequence")
         result = self.parts(loop.activities, first)
         made = ProjectObject("WhileLoop", name="WhileLoop")
-        made["graphEntries"] = (result[:-1] if self.is_unused(result[-1]) else result) or [first]
+        made["graphEntries"] = (result[:-1] if _is_unused(result[-1]) else result) or [first]
         if loop.condition is not None:
             made["condition"] = build_condition(loop.condition, self.context, loop)
         return made
@@ -325,8 +320,6 @@ class _Graph:
         return item
 
 
-def _enclose(sequences: list[ProjectObject], name: str) -> None:
-    """Suspend interrupts at the beginning of the first sequence and resume them at the end of the last one."""
-    first, last = (ProjectObject(f"{kind}AllInterrupts", name=f"Implicit{kind}_{name}") for kind in ("Suspend", "Resume"))
-    sequences[0]["calls"] = [first, *sequences[0]["calls"]]
-    sequences[-1].add("calls", last)
+def _is_unused(entry: ProjectObject) -> bool:
+    """Whether it is a sequence without content, which what follows replaces, also if it is that of a group."""
+    return entry.kind == "CallSequence" and not entry["calls"]
