@@ -75,6 +75,13 @@ def test_branches_may_have_branches_and_ends_of_their_own():
     assert needed == {"C_sync": 2, "C_sync_0": 1}
 
 
+def test_a_barrier_has_the_name_of_the_segment_with_the_branches():
+    inner = perf.Parallel(items=(line("a", "b", "d"), line("a", "c", "d")), completed=1)
+    parts = (perf.Segment(stimulus="a", response="d", items=inner, name="P"), seg("d", "e"))
+    nodes, _, _ = graph_of(perf.EventChain(name="C", stimulus="a", response="e", items=perf.Sequence(parts)))
+    assert nodes == {"a": [], "b": ["a"], "c": ["a"], "P_sync": ["b", "c"], "d": ["P_sync"], "e": ["d"]}
+
+
 def test_synchronized_chains_are_one_graph_from_their_common_event():
     chains = tuple(perf.EventChain(name=name, stimulus="a", response=name) for name in "bc")
     limit = ChainSynchronization(name="S", chains=("b", "c"), tolerance=5 * 10**9)

@@ -195,7 +195,7 @@ class _ChainGraph:
         barrier = ProjectObject(BARRIER, minItems=needed)
         for end in dict.fromkeys(ends):
             link(barrier, end)
-        self.inner.append((barrier, f"{fork.name or self.graph.name}_sync"))
+        self.inner.append((barrier, f"{fork.name or fork.part or self.graph.name}_sync"))
         return barrier
 
     def event(self, name: str) -> ProjectObject:
