@@ -23,6 +23,7 @@ GROUP = "group"
 
 ACCESSES = {perf.AccessKind.READ: "Read", perf.AccessKind.WRITE: "Write"}
 MODIFICATIONS = {perf.ModeOperation(name.lower()): name for name in ("Set", "Increment", "Decrement")}
+_OPERATIONS = ("Request", "Exclusive", "Release")
 _DATA_ACCESS = "memory.ExplicitDataAccess"
 
 
@@ -46,51 +47,32 @@ ROWS: dict[type[Any], tuple[str, Row]] = {
             "SemaphoreAccess",
             ("waiting",),
             semaphore=refers("semaphore", "Semaphore"),
-            operation=choice(
-                "type",
-                {
-                    perf.SemaphoreOperation.REQUEST: "Request",
-                    perf.SemaphoreOperation.EXCLUSIVE: "Exclusive",
-                    perf.SemaphoreOperation.RELEASE: "Release",
-                },
-            ),
+            operation=choice("type", {perf.SemaphoreOperation(name.lower()): name for name in _OPERATIONS}),
         ),
         "SchedulePoint": Row(perf.SchedulePoint, "SchedulePoint"),
     }.items()
 }
 _SERVER = refers("serverFunction", "Function")
+_RESULT = refers("resultFunction", "Function")
+_WAITING = choice("waitingBehavior", {perf.Waiting.ACTIVE: "Active", perf.Waiting.PASSIVE: "Passive"})
+_BLOCKING = choice("blockingType", {perf.Waiting.ACTIVE: "ActiveWait", perf.Waiting.PASSIVE: "PassiveWait"})
+_CALL, _KEPT = perf.ServerCall, ("waits", "waiting")
 #: Server calls have a class for each kind.
 SERVER_CALLS: dict[perf.ServerCallKind, tuple[str, Row]] = {
-    perf.ServerCallKind.SYNCHRONOUS: (
-        "SyncServerCall_{runnable}",
-        Row(
-            perf.ServerCall,
-            "SynchronousServerCall",
-            ("waits", "waiting"),
-            runnable=_SERVER,
-            waiting=choice("waitingBehavior", {perf.Waiting.ACTIVE: "Active", perf.Waiting.PASSIVE: "Passive"}),
+    kind: (f"{prefix}ServerCall_{{runnable}}", row)
+    for kind, prefix, row in (
+        (
+            perf.ServerCallKind.SYNCHRONOUS,
+            "Sync",
+            Row(_CALL, "SynchronousServerCall", _KEPT, runnable=_SERVER, waiting=_WAITING),
         ),
-    ),
-    perf.ServerCallKind.ASYNCHRONOUS: (
-        "AsyncServerCall_{runnable}",
-        Row(
-            perf.ServerCall,
-            "AsynchronousServerCall",
-            ("waits", "waiting"),
-            runnable=_SERVER,
-            result=refers("resultFunction", "Function"),
+        (
+            perf.ServerCallKind.ASYNCHRONOUS,
+            "Async",
+            Row(_CALL, "AsynchronousServerCall", _KEPT, runnable=_SERVER, result=_RESULT),
         ),
-    ),
-    perf.ServerCallKind.GET_RESULT: (
-        "GetResultServerCall_{runnable}",
-        Row(
-            perf.ServerCall,
-            "GetResultServerCall",
-            ("waiting",),
-            runnable=_SERVER,
-            waiting=choice("blockingType", {perf.Waiting.ACTIVE: "ActiveWait", perf.Waiting.PASSIVE: "PassiveWait"}),
-        ),
-    ),
+        (perf.ServerCallKind.GET_RESULT, "GetResult", Row(_CALL, "GetResultServerCall", runnable=_SERVER, waiting=_BLOCKING)),
+    )
 }
 _NOTIFIED = refers_to_several("notifiedFunctions", "Function")
 

@@ -22,9 +22,6 @@ SAMPLINGS = {
 }
 _SAMPLING_OF = {name: sampling for sampling, name in SAMPLINGS.items()}
 
-#: What the importer of INCHRON assumes where none is given (am2inc, activityGraph.cpp).
-_PER_MILLE = 1.0
-
 
 def build_demand(demand: perf.Distribution[int], context: Exporting, source: Any) -> ProjectObject:
     """A demand in ticks."""
@@ -54,7 +51,8 @@ def build_demand(demand: perf.Distribution[int], context: Exporting, source: Any
             made |= {"min": ticks(lower or 0), "max": ticks(upper or 0)}
         case perf.Weibull(lower=lower, average=average, upper=upper, exceeding=exceeding):
             made = {"type": "WeibullEstimator", "min": ticks(lower), "max": ticks(upper), "mean": ticks(whole_part(average))}
-            made["outlierProbability"] = exceeding / 1000 if exceeding > 0 else _PER_MILLE / 1000
+            # The importer of INCHRON assumes 1 per mille where none is given (am2inc, activityGraph.cpp).
+            made["outlierProbability"] = (exceeding if exceeding > 0 else 1.0) / 1000
         case perf.Beta(alpha=alpha, beta=beta, lower=lower, upper=upper):
             made = {"type": "Beta", "alpha": float(alpha), "beta": float(beta), "min": ticks(lower), "max": ticks(upper)}
         case perf.Histogram(buckets=buckets):

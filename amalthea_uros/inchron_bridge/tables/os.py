@@ -128,13 +128,13 @@ def _place_isr(process: ProjectObject, allocation: IsrAllocation | None, context
         note(process, controller=allocation.controller)
         result = context.system.interrupt_controllers.get(allocation.controller)
         process[_CORES] = [context.need("CpuCore", core, process.name) for core in (result.cores if result else ())]
-        process["priority"] = allocation.priority or 0
-        _keep_priority(process, allocation.priority)
+        _set_priority(process, allocation.priority)
     controller.add("schedulables", process)
 
 
-def _keep_priority(process: ProjectObject, priority: int | None) -> None:
+def _set_priority(process: ProjectObject, priority: int | None) -> None:
     """A process of a project always has a priority; that it has none is not the same as 0."""
+    process["priority"] = priority or 0
     if priority is None:
         note(process, priority=None)
 
@@ -144,8 +144,7 @@ def _place_task(process: ProjectObject, allocations: list[TaskAllocation], conte
         global_system(context)
         context.need("Scheduler", DEFAULT, GLOBAL).add("schedulables", process)
     for allocation in allocations[:1]:
-        process["priority"] = allocation.priority or 0
-        _keep_priority(process, allocation.priority)
+        _set_priority(process, allocation.priority)
         process[_CORES] = [context.need("CpuCore", core, process.name) for core in allocation.cores]
         if allocation.deadline is not None:
             process["deadline"] = context.time(allocation.deadline, process.name)
