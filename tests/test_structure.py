@@ -22,7 +22,7 @@ LINES = {
     "_version": 1,
     "am": 2,
     "analyze": 8857,
-    "bridge": 2871,
+    "bridge": 2873,
     "cli": 2510,
     "compare": 3862,
     "design": 6641,

@@ -105,7 +105,7 @@ _TAKING_TIME = (
     am.WaitEvent,
     am.EnforcedMigration,
 )
-#: The name of the group that represents an incomplete access.
+#: The name of the group that represents an incomplete access; the label follows after a blank.
 _ACCESS = "access"
 
 
@@ -131,10 +131,9 @@ class _Activities(ClassTable):
                 return _build_communication(item, context)
             case perf.ServerCall():
                 return _build_server_call(item, context)
-            case perf.Incomplete(label=str(label)):
-                return am.LabelAccess(data=_LABEL.build(label, context))
-            case perf.Incomplete(reason=reason, is_access=is_access):
-                return am.Group(name=_ACCESS if is_access else None, custom_properties=build_reason(reason))
+            case perf.Incomplete(reason=reason, is_access=is_access, label=label):
+                name = (_ACCESS if is_access else "") + ("" if label is None else f" {label}")
+                return am.Group(name=name or None, custom_properties=build_reason(reason))
         return super().build(item, context)
 
     def extract(self, element: Any, context: Extracting) -> Any:
@@ -154,8 +153,9 @@ class _Activities(ClassTable):
             return super().extract(element, context)
         match element:
             case am.Group() if (reason := extract_reason(element)) is not None:
-                is_access = element.name == _ACCESS
-                return perf.Incomplete(reason=reason, is_access=is_access, locate=partial(context.location, element))
+                what, blank, label = (element.name or "").partition(" ")
+                locate = partial(context.location, element)
+                return perf.Incomplete(reason=reason, is_access=what == _ACCESS, label=label if blank else None, locate=locate)
             case am.Ticks():
                 demand = _extract_demand(element, context, element)
                 return None if demand is None else perf.Execute(demand=demand, locate=partial(context.location, element))

@@ -230,7 +230,7 @@ class _Graph:
                 item.add("dataAccess", data_access(label, kind, context))
                 context.keep(item, activity, "communication", "protection", "times")
                 yield item
-            case perf.Incomplete(label=str(label)):
+            case perf.Incomplete(label=str(label)) if context.find("DataObject", label) is not None:
                 context.changed(activity, "an access of unknown kind", "as a read, as the importer of INCHRON takes it")
                 item = ProjectObject("ResourceConsumption", name=self.named("LabelAccess_{label}", activity))
                 item.add("dataAccess", data_access(label, perf.AccessKind.READ, context))
