@@ -33,7 +33,7 @@ LINES = {
     "executors": 2224,
     "findings": 535,
     "inchron": 532,
-    "inchron_bridge": 3353,
+    "inchron_bridge": 3349,
     "judge": 566,
     "measure": 1121,
     "metamodel": 3288,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.values import NO_LIMIT, time, time_of
@@ -19,11 +17,8 @@ def imitate(model: ProjectObject, version: str) -> tuple[Finding, ...]:
     The changes.
     """
     with_relations = version == "1.2.0"
-    changes = Counter(filter(None, (_imitated(item, with_relations) for item in model.walk())))
-    return tuple(
-        Finding("INC010", Severity.WARNING, f"{what}, as INCHRON's importer writes it ({number} times)")
-        for what, number in changes.items()
-    )
+    changes = dict.fromkeys(filter(None, [_imitated(item, with_relations) for item in model.walk()]))
+    return tuple(Finding("INC010", Severity.WARNING, f"{what}, as INCHRON's importer writes it") for what in changes)
 
 
 def _imitated(item: ProjectObject, with_relations: bool) -> str | None:
