@@ -110,10 +110,10 @@ class Exporting:
 def _finding(rule: str, what: str, how: str, sources: list[Any]) -> Finding:
     name = next(filter(None, map(_name, sources)), "")
     subject, times = f"{name}: " if name else "", f" ({len(sources)} times)" if len(sources) > 1 else ""
-    severity, message = Severity.INFO, f"{subject}{what}, written {how}{times}"
     if rule == "INC004":
-        severity, message = Severity.WARNING, f"{subject}{what} has no place in an INCHRON project{times}: {how}"
-    return Finding(rule, severity, message, _place(sources), "", name)
+        message = f"{subject}{what} has no place in an INCHRON project{times}: {how}"
+        return Finding("INC004", Severity.WARNING, message, _place(sources), "", name)
+    return Finding("INC005", Severity.INFO, f"{subject}{what}, written {how}{times}", _place(sources), "", name)
 
 
 def _name(source: Any) -> str:
