@@ -19,6 +19,7 @@ from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.amalthea import details_of
+from amalthea_uros.inchron_bridge.basics.comments import noted
 from amalthea_uros.inchron_bridge.build import build_project
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.model import Model
@@ -116,9 +117,9 @@ _CLASSES = {"Process": "tasks and ISRs", "Function": "runnables", "memory.DataOb
 
 def _exported(project: ProjectObject) -> Iterator[str]:
     yield from (_CLASSES[item.kind] for item in project.walk() if item.kind in _CLASSES)
-    yield from ("event chains" for graph in project["eventChains"] if "synchronized" not in (graph["comment"] or ""))
+    yield from ("event chains" for graph in project["eventChains"] if not {"synchronized", "beside"} & noted(graph).keys())
     for item in project["requirements"]:
-        if item["evaluate"]:
+        if item["evaluate"] and "beside" not in noted(item):
             is_of_chain = item.kind == "requirement.EventChainTimingRequirement" and not item["orSemanticsStart"]
             yield "limits of event chains" if is_of_chain else "other timing constraints and requirements"
     for generator in [each for scenario in project["scenarios"] for each in scenario["generators"]]:

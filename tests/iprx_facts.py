@@ -102,12 +102,19 @@ def differences(ours, theirs, path=""):
     if isinstance(ours, dict) and isinstance(theirs, dict):
         for key in sorted(ours.keys() | theirs.keys()):
             yield from differences(ours.get(key), theirs.get(key), f"{path}/{key}")
+    elif isinstance(ours, list) and isinstance(theirs, list) and _is_nameless(ours) and _is_nameless(theirs):
+        yield from differences(ours[0], theirs[0], f"{path}[0]")
     elif isinstance(ours, list) and isinstance(theirs, list):
         mine, others = ({_key(each): each for each in each_list} for each_list in (ours, theirs))
         for key in [*mine, *(key for key in others if key not in mine)]:
             yield from differences(mine.get(key), others.get(key), f"{path}[{key}]")
     elif ours != theirs:
         yield path, ours, theirs
+
+
+def _is_nameless(items):
+    """Whether it is one object without a name, of which nothing but its content can differ."""
+    return len(items) == 1 and isinstance(items[0], dict) and "name" not in items[0]
 
 
 def _key(item):

@@ -100,6 +100,12 @@ def _install(context: click.Context, _parameter: click.Parameter, value: bool) -
     "-m", "--mapping", type=OUTPUT_FILE, metavar="FILE", help="Also write which object of the model became which one."
 )
 @click.option("--no-memory-accesses", is_flag=True, help="Leave out memories, caches, interconnects and ports.")
+@click.option(
+    "--like-am2inc",
+    "is_imitation",
+    is_flag=True,
+    help="Also write what am2inc writes wrongly as it does, to compare a project with one that it made.",
+)
 @click.option("--stable", is_flag=True, expose_value=False, hidden=True)
 @click.option("--relax", is_flag=True, expose_value=False, hidden=True)
 @click.option("--pedantic", is_flag=True, expose_value=False, hidden=True)
@@ -113,6 +119,7 @@ def export(
     no_stable: bool,
     mapping: Path | None,
     no_memory_accesses: bool,
+    is_imitation: bool,
     is_dry: bool,
 ) -> None:
     """Write models or an app.yaml as a project of INCHRON's chronSUITE (.iprx).
@@ -140,7 +147,13 @@ def export(
     try:
         with working("Exporting"):
             result = service.export(
-                paths, target or STANDARD_OUTPUT, ids, mapping=mapping, with_memories=not no_memory_accesses, write=not is_dry
+                paths,
+                target or STANDARD_OUTPUT,
+                ids,
+                mapping=mapping,
+                with_memories=not no_memory_accesses,
+                like_importer=is_imitation,
+                write=not is_dry,
             )
     except AmurosError as error:
         if not is_importer:

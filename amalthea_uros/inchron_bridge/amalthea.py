@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.inchron.facts import features
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
@@ -99,7 +100,7 @@ def _policies(task: am.Task) -> dict[str, str]:
 def add_details(model: ProjectObject, details: AmaltheaDetails) -> None:
     """Complete a project: ports with their widths, connections, caches, callback servers."""
     holders = {item.name: item for cpu in model["cpus"] for item in (*cpu["cores"], *cpu["memories"], *cpu["interconnects"])}
-    holders |= {item.name: item for item in model["memories"]}
+    holders |= {item.name: item for item in (*model["memories"], *model["interconnects"])}
     ports: dict[Any, ProjectObject] = {}
     for module in details.modules:
         if (holder := holders.get(module.name or "")) is not None:
@@ -121,26 +122,23 @@ def _add_ports(holder: ProjectObject, module: Any, ports: dict[Any, ProjectObjec
     is_handler = holder.kind == "memory.Interconnect"
     for port in module.ports:
         role = {_INITIATOR: "initiator", _RESPONDER: "responder"}.get(port.port_type)
-        if role is None or (not is_handler and role not in _roles(holder)):
+        if role is None or (not is_handler and role not in features(holder.kind)):
             continue
-        # The port of a core or memory is there already, and interconnects may refer to it.
-        made = ProjectObject(f"memory.{role.capitalize()}Port") if is_handler else holder[role]
+        # Of a core or memory there is one port, which the others are, too.
+        made = (None if is_handler else holder[role]) or ProjectObject(f"memory.{role.capitalize()}Port")
         made["name"] = port.name or role
         if role == "initiator" and port.priority:
             made["priority"] = port.priority
         if is_handler:
             holder.add(f"{role}s", made)
         else:
+            holder[role] = made
             # The importer takes the bits of AMALTHEA for bytes here.
             holder["bitWidth"] = ProjectObject("DataSize", value=port.bit_width or 0, unit="B")
         ports[port] = made
     if is_handler and module.ports:
         most = max(port.bit_width or 0 for port in module.ports)
         holder["bitWidth"] = ProjectObject("DataSize", value=most, unit="bit")
-
-
-def _roles(holder: ProjectObject) -> set[str]:
-    return {"CpuCore": {"initiator"}, "memory.Memory": {"responder"}}.get(holder.kind, {"initiator", "responder"})
 
 
 def _complete_cache(holder: ProjectObject, definition: am.CacheDefinition) -> None:

@@ -15,20 +15,18 @@ from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.orders import keep_orders
 from amalthea_uros.inchron_bridge.basics.seals import seal_all
+from amalthea_uros.inchron_bridge.imitation import imitate
 from amalthea_uros.inchron_bridge.tables.chains import build_chains
-from amalthea_uros.inchron_bridge.tables.hardware import build_hardware, leave_out_memories
+from amalthea_uros.inchron_bridge.tables.hardware import build_hardware, connect_hardware, leave_out_memories
 from amalthea_uros.inchron_bridge.tables.hardware_back import HARDWARE, extract_hardware
 from amalthea_uros.inchron_bridge.tables.os import build_systems
 from amalthea_uros.inchron_bridge.tables.requirements import build_requirements
 from amalthea_uros.inchron_bridge.tables.software import assign_owners, build_graphs, build_software
 from amalthea_uros.inchron_bridge.tables.stimuli import build_stimuli
-from amalthea_uros.perf.hardware import StructureKind
 from amalthea_uros.perf.host import Host
 from amalthea_uros.perf.network import Network
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import Time
-
-_NAME = "New Project"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +49,7 @@ def build_project(
     iterations: Mapping[str, tuple[Time, Time]] = MappingProxyType({}),
     *,
     with_memories: bool = True,
+    like_importer_of: str | None = None,
 ) -> ProjectBuild:
     """The project of a system.
 
@@ -59,6 +58,7 @@ def build_project(
     details : what an AMALTHEA model says beyond the system
     iterations : the shortest and the longest time between two iterations of executors, by the stimuli that stand for them
     with_memories : with memories, caches, interconnects and ports, through which accesses would take time
+    like_importer_of : the AMALTHEA version whose errors of INCHRON's importer the project has; none if it has to be right
 
     Raises
     ------
@@ -66,8 +66,6 @@ def build_project(
     """
     details = details or AmaltheaDetails()
     context = Exporting(system, details.units, iterations)
-    systems = [each.name for each in system.hardware.walk() if each.kind is StructureKind.SYSTEM]
-    context.model["name"] = systems[-1] if systems else _NAME
     build_hardware(context, details.handlers)
     build_stimuli(context)
     build_software(context)
@@ -75,6 +73,8 @@ def build_project(
     build_graphs(context)
     assign_owners(context)
     add_details(context.model, details)
+    if not details.handlers:
+        connect_hardware(context)
     build_chains(context)
     build_requirements(context)
     _keep_middleware(context)
@@ -83,7 +83,10 @@ def build_project(
     _keep_lists(context)
     link_opposites(context.model)
     seal_all(context.model)
-    return ProjectBuild(model=context.model, findings=context.finish())
+    findings = context.finish()
+    if like_importer_of is not None:
+        findings += imitate(context.model, like_importer_of)
+    return ProjectBuild(model=context.model, findings=findings)
 
 
 def _keep_lists(context: Exporting) -> None:

@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.inchron_bridge.tables.stimuli import highest_rate
+from amalthea_uros.inchron_bridge.tables.stimuli import substitute
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
-from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.system import System
@@ -42,24 +41,13 @@ def importable(
 
 def _converted(stimulus: perf.Stimulus, iterations: Mapping[str, tuple[Time, Time]], findings: list[Finding]) -> perf.Stimulus:
     """A stimulus of a class that is converted, if there is one that comes close."""
-    name = stimulus.name
-    if name in iterations:
-        least, most = iterations[name]
-        findings.append(
-            _changed(name, "the iterations of an executor", "as activations between the shortest and the longest one")
-        )
-        return perf.RelativePeriodic(name=name, distance=Uniform(lower=least, upper=most), origin=stimulus.origin)
-    if (rate := highest_rate(stimulus)) is not None:
-        period, distance = rate
-        findings.append(_changed(name, type(stimulus).__name__, "as activations at the highest rate that lasts"))
-        return perf.Periodic(
-            name=name, period=period, min_distance=distance, condition=stimulus.condition, origin=stimulus.origin
-        )
+    closest, what, how = substitute(stimulus, iterations)
+    if closest is not None:
+        findings.append(_changed(stimulus.name, what, how))
+        return closest
     if isinstance(stimulus, perf.ArrivalCurve | perf.VariableRate | perf.EventTriggered | perf.Custom):
-        message = (
-            f"{name}: {type(stimulus).__name__} is not converted by INCHRON's importer, so that nothing is activated there"
-        )
-        findings.append(Finding("BLD003", Severity.WARNING, message, stimulus.origin, "", name))
+        message = f"{stimulus.name}: {what} is not converted by INCHRON's importer, so that nothing is activated there"
+        findings.append(Finding("BLD003", Severity.WARNING, message, stimulus.origin, "", stimulus.name))
     return stimulus
 
 

@@ -356,10 +356,12 @@ class Incomplete(AbstractActivity):
     ----------
     reason : what is not stated
     is_access : whether it is at least known to be an access to data, which takes the time of a memory access only
+    label : what is accessed, if that is known and only the kind of the access is not
     """
 
     reason: str
     is_access: bool = False
+    label: str | None = None
 
 
 Activity: TypeAlias = (

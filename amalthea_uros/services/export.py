@@ -52,6 +52,7 @@ def export(
     *,
     mapping: StrPath | None = None,
     with_memories: bool = True,
+    like_importer: bool = False,
     write: bool = True,
 ) -> ExportedModel:
     """Write models, or an `app.yaml`, as an INCHRON project; and a project, if that is given, as an AMALTHEA model.
@@ -62,6 +63,7 @@ def export(
     ids : the namespace of the ids of a project
     mapping : a file to write that says which object of an AMALTHEA model became which of the project
     with_memories : whether a project has memories, and what connects them
+    like_importer : whether a project also has the errors of INCHRON's importer, to compare it with one of the importer
     write : whether the files are written
 
     Raises
@@ -82,7 +84,7 @@ def export(
         if is_model:
             texts = {target: _model_text(opened)}
         else:
-            built = _project(opened, with_memories=with_memories)
+            built = _project(opened, with_memories=with_memories, like_importer=like_importer)
             texts, findings = {target: project_text(built.model, ids)}, built.findings
             if mapping is not None:
                 texts[Path(mapping)] = _mapping_text(opened, built.model, ids, target)
@@ -92,12 +94,20 @@ def export(
     return ExportedModel(paths=opened.paths, target=target, text=texts[target], findings=result)
 
 
-def _project(opened: SystemInput, *, with_memories: bool) -> ProjectBuild:
+def _project(opened: SystemInput, *, with_memories: bool, like_importer: bool) -> ProjectBuild:
     from amalthea_uros.inchron_bridge.amalthea import details_of
     from amalthea_uros.inchron_bridge.build import build_project
 
-    details = details_of(opened.model) if opened.model is not None else None
-    return build_project(opened.system, details, iterations_of(opened.system), with_memories=with_memories)
+    model = opened.model
+    details = details_of(model) if model is not None else None
+    version = model.documents[0].file_version if model is not None else ""
+    return build_project(
+        opened.system,
+        details,
+        iterations_of(opened.system),
+        with_memories=with_memories,
+        like_importer_of=version if like_importer else None,
+    )
 
 
 def _mapping_text(opened: SystemInput, project: ProjectObject, ids: UUID, target: Path) -> str:

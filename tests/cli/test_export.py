@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 from command import amuros
-from support import ROOT
+from support import ROOT, model_text
 
 SAMPLE = ROOT / "samples" / "bodas-test-hardware.yaml"
 
@@ -105,6 +105,25 @@ def test_the_options_of_am2inc_are_understood(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the settings are a file on Linux only")
+def test_errors_of_am2inc_are_written_only_on_request_and_with_a_warning(tmp_path):
+    """A relation other than equal, which am2inc writes as an equality."""
+    path = tmp_path / "model.amxmi"
+    condition = '<entries xsi:type="am:ModeValueCondition" label="L?type=ModeLabel" relation="LESS_THAN" value="7"/>'
+    path.write_text(
+        model_text(
+            f'<swModel><runnables name="R"><executionCondition>{condition}</executionCondition></runnables>'
+            '<modes xsi:type="am:NumericMode" name="M"/>'
+            '<modeLabels name="L" mode="M?type=NumericMode" initialValue="0"/></swModel>'
+        )
+    )
+    plain, like = (amuros("export", "--importer", *option, path) for option in ((), ("--like-am2inc",)))
+    assert (plain.returncode, like.returncode) == (0, 0)
+    assert 'relationalOperator="lt"' in plain.stdout
+    assert "relationalOperator" not in like.stdout
+    warning = "[amuros] Warning: a relation other than equal, written as an equality, as INCHRON's importer writes it"
+    assert (warning in plain.stderr, warning in like.stderr) == (False, True)
+
+
 def test_an_importer_is_entered_in_the_settings_in_place_of_another_one(tmp_path, monkeypatch):
     settings = tmp_path / "INCHRON" / "ModelImporter.conf"
     settings.parent.mkdir()

@@ -2,11 +2,11 @@
 
 import re
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
 import pytest
-from support import SHARED
+from support import SHARED, model_text
 
 from amalthea_uros.inchron.ids import NAMESPACE
 from amalthea_uros.inchron.read import parse_project, read_project
@@ -75,6 +75,13 @@ def test_branches_may_have_branches_and_ends_of_their_own():
     assert needed == {"C_sync": 2, "C_sync_0": 1}
 
 
+def test_a_barrier_has_the_name_of_the_segment_with_the_branches():
+    inner = perf.Parallel(items=(line("a", "b", "d"), line("a", "c", "d")), completed=1)
+    parts = (perf.Segment(stimulus="a", response="d", items=inner, name="P"), seg("d", "e"))
+    nodes, _, _ = graph_of(perf.EventChain(name="C", stimulus="a", response="e", items=perf.Sequence(parts)))
+    assert nodes == {"a": [], "b": ["a"], "c": ["a"], "P_sync": ["b", "c"], "d": ["P_sync"], "e": ["d"]}
+
+
 def test_synchronized_chains_are_one_graph_from_their_common_event():
     chains = tuple(perf.EventChain(name=name, stimulus="a", response=name) for name in "bc")
     limit = ChainSynchronization(name="S", chains=("b", "c"), tolerance=5 * 10**9)
@@ -101,6 +108,22 @@ def line(*events):
     return seg(events[0], events[-1], perf.Sequence(tuple(seg(*pair) for pair in pairwise(events))))
 
 
+#: A chain of two events of tasks without types, and a limit of it.
+UNTYPED = """\
+<swModel><tasks name="A"/><tasks name="B"/></swModel>
+<eventModel>
+  <events xsi:type="am:ProcessEvent" name="a" entity="A?type=Task"/>
+  <events xsi:type="am:ProcessEvent" name="b" entity="B?type=Task"/>
+</eventModel>
+<constraintsModel>
+  <eventChains name="C" stimulus="a?type=ProcessEvent" response="b?type=ProcessEvent"/>
+  <timingConstraints xsi:type="am:EventChainLatencyConstraint" name="L" scope="C?type=EventChain" type="Reaction">
+    <maximum value="5" unit="ms"/>
+  </timingConstraints>
+</constraintsModel>
+"""
+
+
 @pytest.mark.parametrize("name", ["10_chain_gap", "10_chain_par_badresp", "10_chain_par_badstim"])
 def test_chains_that_the_importer_drops_or_changes_are_graphs(name, tmp_path):
     found = list((SHARED / "vectors").glob(f"am2inc/{name}.amxmi"))
@@ -109,6 +132,19 @@ def test_chains_that_the_importer_drops_or_changes_are_graphs(name, tmp_path):
     text = export(found[0], tmp_path / "project.iprx").text
     assert "<eventChains " in text
     assert open_system(tmp_path / "project.iprx").system.events == open_system(found[0]).system.events
+
+
+def test_events_without_a_type_become_a_graph_for_each_type(tmp_path):
+    """As in the analysis, each may be an activation, a start or an end, so that a limit is met only if it is for all of them."""
+    path = tmp_path / "model.amxmi"
+    path.write_text(model_text(UNTYPED))
+    text = export(path, tmp_path / "project.iprx").text
+    graphs = read_project(tmp_path / "project.iprx").model["eventChains"]
+    ends = [tuple(node["first"]["traceEvent"].name for node in graph["nodes"]) for graph in graphs]
+    assert ends == list(product(("Activate", "Start", "Terminate"), repeat=2))
+    assert text.count("<requirements ") == 9
+    given, read = open_system(path), open_system(tmp_path / "project.iprx")
+    assert (read.system, read.findings) == (given.system, ())
 
 
 #: Three tasks on a core; the chain of the description is replaced by graphs of their starts.

@@ -14,6 +14,7 @@ from amalthea_uros.cli.main import cli
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.export import export
+from amalthea_uros.services.simulate import simulate
 from amalthea_uros.services.subject import open_system
 
 SAMPLES = sorted((ROOT / "samples").glob("*.yaml"))
@@ -46,6 +47,15 @@ def test_the_analysis_of_a_project_has_the_results_of_the_description(sample, tm
     # Findings have places of the file, and some are about defaults that only a description can leave out.
     assert {each.message for each in read.findings} <= {each.message for each in given.findings}
     assert replace(read, findings=()) == replace(given, findings=())
+
+
+@pytest.mark.parametrize("sample", every(5, SAMPLES), ids=lambda path: path.stem)
+def test_the_simulation_of_a_project_has_the_events_and_figures_of_the_description(sample, tmp_path):
+    export(sample, tmp_path / "project.iprx")
+    given, read = (simulate(path, "200 ms", seed=3, trace=True) for path in (sample, tmp_path / "project.iprx"))
+    assert replace(read, findings=(), trace=None, origin=None) == replace(given, findings=(), trace=None, origin=None)
+    events, others = given.trace.to_dict(), read.trace.to_dict()
+    assert {name for name in events if events[name].tolist() != others[name].tolist()} == set()
 
 
 def test_a_project_becomes_an_amalthea_model(tmp_path):

@@ -774,7 +774,10 @@ def allocated(attributes):
             '<swModel><labels name="L"><size value="9223372036854775808" unit="B"/></labels></swModel>',
         ),
         ("INC-SW-GROUPNAME", ["info"], graph('<items t="Group" name="G"><items t="Switch"/></items>')),
+        ("INC-SW-GROUPNAME", ["info"], graph('<items t="Group" name="G"><items t="Group" name="H"/></items>')),
         ("INC-SW-GROUPNAME", [], graph('<items t="Group" name="G"><items t="Ticks"/><items t="Switch"/></items>')),
+        # The first call of the sequence suspends interrupts.
+        ("INC-SW-GROUPNAME", [], graph('<items t="Group" name="G" interruptible="false"><items t="Switch"/></items>')),
         ("INC-IO-REF", ["error"], '<mappingModel><memoryMapping abstractElement="X?type=Label"/></mappingModel>'),
         ("INC-IO-REF", ["error"], events(chain(("x?type=ProcessEvent", "b")))),
         ("INC-IO-REF", ["error"], events(chain(("a", "x?type=ProcessEvent")))),

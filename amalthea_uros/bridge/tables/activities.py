@@ -92,6 +92,7 @@ _CALLS = Codec(
 
 # Activities
 
+_LABEL = reference(ObjectKind.DATA)
 _ACCESSES_OF_LABELS = (am.LabelAccess, am.SenderReceiverCommunication)
 #: What takes time, or may wait, so that it must not disappear if it is incomplete.
 _TAKING_TIME = (
@@ -104,7 +105,7 @@ _TAKING_TIME = (
     am.WaitEvent,
     am.EnforcedMigration,
 )
-#: The name of the group that represents an incomplete access.
+#: The name of the group that represents an incomplete access; the label follows after a blank.
 _ACCESS = "access"
 
 
@@ -130,8 +131,9 @@ class _Activities(ClassTable):
                 return _build_communication(item, context)
             case perf.ServerCall():
                 return _build_server_call(item, context)
-            case perf.Incomplete(reason=reason, is_access=is_access):
-                return am.Group(name=_ACCESS if is_access else None, custom_properties=build_reason(reason))
+            case perf.Incomplete(reason=reason, is_access=is_access, label=label):
+                name = (_ACCESS if is_access else "") + ("" if label is None else f" {label}")
+                return am.Group(name=name or None, custom_properties=build_reason(reason))
         return super().build(item, context)
 
     def extract(self, element: Any, context: Extracting) -> Any:
@@ -141,6 +143,7 @@ class _Activities(ClassTable):
         return perf.Incomplete(
             reason=f"an incomplete {type(element).__name__}",
             is_access=isinstance(element, _ACCESSES_OF_LABELS),
+            label=_LABEL.extract(element.data, context, element) if type(element) is am.LabelAccess else None,
             locate=partial(context.location, element),
         )
 
@@ -150,8 +153,9 @@ class _Activities(ClassTable):
             return super().extract(element, context)
         match element:
             case am.Group() if (reason := extract_reason(element)) is not None:
-                is_access = element.name == _ACCESS
-                return perf.Incomplete(reason=reason, is_access=is_access, locate=partial(context.location, element))
+                what, blank, label = (element.name or "").partition(" ")
+                locate = partial(context.location, element)
+                return perf.Incomplete(reason=reason, is_access=what == _ACCESS, label=label if blank else None, locate=locate)
             case am.Ticks():
                 demand = _extract_demand(element, context, element)
                 return None if demand is None else perf.Execute(demand=demand, locate=partial(context.location, element))
@@ -325,7 +329,7 @@ ACTIVITIES: ClassTable = _Activities(
     ClassEntry(
         perf.LabelAccess,
         am.LabelAccess,
-        label=("data", reference(ObjectKind.DATA)),
+        label=("data", _LABEL),
         kind=("access", same_names(perf.AccessKind, am.LabelAccessEnum)),
         communication=(
             "implementation",

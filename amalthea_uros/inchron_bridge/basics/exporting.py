@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
@@ -105,20 +104,16 @@ class Exporting:
         """
         if self._errors:
             raise WriteError(dict.fromkeys(self._errors))
-        return tuple(
-            _finding(rule, what, how, sources, Counter(map(_name, sources)))
-            for (what, how, rule), sources in self._lost.items()
-        )
+        return tuple(_finding(rule, what, how, sources) for (what, how, rule), sources in self._lost.items())
 
 
-def _finding(rule: str, what: str, how: str, sources: list[Any], names: Counter[str]) -> Finding:
-    first = next((name for name in names if name), "")
-    times = f" ({len(sources)} times)" if len(sources) > 1 else ""
-    of = f"{first}: " if first else ""
+def _finding(rule: str, what: str, how: str, sources: list[Any]) -> Finding:
+    name = next(filter(None, map(_name, sources)), "")
+    subject, times = f"{name}: " if name else "", f" ({len(sources)} times)" if len(sources) > 1 else ""
     if rule == "INC004":
-        message = f"{of}{what} has no place in an INCHRON project{times}: {how}"
-        return Finding("INC004", Severity.WARNING, message, _place(sources), "", first)
-    return Finding("INC005", Severity.INFO, f"{of}{what}, written {how}{times}", _place(sources), "", first)
+        message = f"{subject}{what} has no place in an INCHRON project{times}: {how}"
+        return Finding("INC004", Severity.WARNING, message, _place(sources), "", name)
+    return Finding("INC005", Severity.INFO, f"{subject}{what}, written {how}{times}", _place(sources), "", name)
 
 
 def _name(source: Any) -> str:

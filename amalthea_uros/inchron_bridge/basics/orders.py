@@ -5,14 +5,16 @@ Which of two equal processes is executed first can depend on it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from functools import partial
-from typing import Any
+from operator import attrgetter
+from typing import Any, TypeVar
 
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import note
 from amalthea_uros.perf.system import System
+
+T = TypeVar("T")
 
 #: Lists of a system: its part, the field, and the field of an item that identifies it.
 _LISTS = (
@@ -43,19 +45,17 @@ def keep_orders(model: ProjectObject, system: System) -> None:
 
 
 def in_kept_order(system: System, content: Mapping[str, Any]) -> System:
-    """The system with its lists in the order that a comment keeps; objects that it does not know come last."""
+    """The system with its lists in the order that a comment keeps."""
     stated = content.get(_KEY)
     orders: dict[str, Any] = stated if isinstance(stated, dict) else {}
     parts: dict[str, Any] = {part: getattr(system, part) for part, _, _ in _LISTS}
     for part, field, name in _LISTS:
-        names = orders.get(f"{part}.{field}")
-        if isinstance(names, list):
-            places = {each: place for place, each in enumerate(names) if isinstance(each, str)}
-            items = getattr(parts[part], field)
-            ordered = sorted(items, key=partial(_place, places=places, name=name))
-            parts[part] = replace(parts[part], **{field: tuple(ordered)})
+        items = in_order(getattr(parts[part], field), attrgetter(name), orders.get(f"{part}.{field}"))
+        parts[part] = replace(parts[part], **{field: items})
     return replace(system, **parts)
 
 
-def _place(item: Any, places: Mapping[str, int], name: str) -> int:
-    return places.get(getattr(item, name), len(places))
+def in_order(items: Iterable[T], name: Callable[[T], Any], order: Any) -> tuple[T, ...]:
+    """The items in the order of names that a comment keeps, if it does; those that it does not know come last."""
+    places = {each: place for place, each in enumerate(order) if isinstance(each, str)} if isinstance(order, list) else {}
+    return tuple(sorted(items, key=lambda item: places.get(name(item), len(places))))

@@ -21,7 +21,9 @@ ACTIVITY = "activity"
 #: And a group, in the comment of the first of the entries that stand for it.
 GROUP = "group"
 
-_ACCESSES = {perf.AccessKind.READ: "Read", perf.AccessKind.WRITE: "Write"}
+ACCESSES = {perf.AccessKind.READ: "Read", perf.AccessKind.WRITE: "Write"}
+MODIFICATIONS = {perf.ModeOperation(name.lower()): name for name in ("Set", "Increment", "Decrement")}
+_OPERATIONS = ("Request", "Exclusive", "Release")
 _DATA_ACCESS = "memory.ExplicitDataAccess"
 
 
@@ -29,7 +31,7 @@ def data_access(label: str, kind: perf.AccessKind, context: Exporting) -> Projec
     """An access to a variable."""
     target = context.need("DataObject", label, context.holder)
     rate = ProjectObject("DataRate", value=0)
-    return ProjectObject(_DATA_ACCESS, accessType=_ACCESSES[kind], dataObject=target, bandwidth=rate)
+    return ProjectObject(_DATA_ACCESS, accessType=ACCESSES[kind], dataObject=target, bandwidth=rate)
 
 
 #: Activities that are one item of a call sequence each, with the beginnings of their names.
@@ -45,51 +47,32 @@ ROWS: dict[type[Any], tuple[str, Row]] = {
             "SemaphoreAccess",
             ("waiting",),
             semaphore=refers("semaphore", "Semaphore"),
-            operation=choice(
-                "type",
-                {
-                    perf.SemaphoreOperation.REQUEST: "Request",
-                    perf.SemaphoreOperation.EXCLUSIVE: "Exclusive",
-                    perf.SemaphoreOperation.RELEASE: "Release",
-                },
-            ),
+            operation=choice("type", {perf.SemaphoreOperation(name.lower()): name for name in _OPERATIONS}),
         ),
         "SchedulePoint": Row(perf.SchedulePoint, "SchedulePoint"),
     }.items()
 }
 _SERVER = refers("serverFunction", "Function")
+_RESULT = refers("resultFunction", "Function")
+_WAITING = choice("waitingBehavior", {perf.Waiting.ACTIVE: "Active", perf.Waiting.PASSIVE: "Passive"})
+_BLOCKING = choice("blockingType", {perf.Waiting.ACTIVE: "ActiveWait", perf.Waiting.PASSIVE: "PassiveWait"})
+_CALL, _KEPT = perf.ServerCall, ("waits", "waiting")
 #: Server calls have a class for each kind.
 SERVER_CALLS: dict[perf.ServerCallKind, tuple[str, Row]] = {
-    perf.ServerCallKind.SYNCHRONOUS: (
-        "SyncServerCall_{runnable}",
-        Row(
-            perf.ServerCall,
-            "SynchronousServerCall",
-            ("waits", "waiting"),
-            runnable=_SERVER,
-            waiting=choice("waitingBehavior", {perf.Waiting.ACTIVE: "Active", perf.Waiting.PASSIVE: "Passive"}),
+    kind: (f"{prefix}ServerCall_{{runnable}}", row)
+    for kind, prefix, row in (
+        (
+            perf.ServerCallKind.SYNCHRONOUS,
+            "Sync",
+            Row(_CALL, "SynchronousServerCall", _KEPT, runnable=_SERVER, waiting=_WAITING),
         ),
-    ),
-    perf.ServerCallKind.ASYNCHRONOUS: (
-        "AsyncServerCall_{runnable}",
-        Row(
-            perf.ServerCall,
-            "AsynchronousServerCall",
-            ("waits", "waiting"),
-            runnable=_SERVER,
-            result=refers("resultFunction", "Function"),
+        (
+            perf.ServerCallKind.ASYNCHRONOUS,
+            "Async",
+            Row(_CALL, "AsynchronousServerCall", _KEPT, runnable=_SERVER, result=_RESULT),
         ),
-    ),
-    perf.ServerCallKind.GET_RESULT: (
-        "GetResultServerCall_{runnable}",
-        Row(
-            perf.ServerCall,
-            "GetResultServerCall",
-            ("waiting",),
-            runnable=_SERVER,
-            waiting=choice("blockingType", {perf.Waiting.ACTIVE: "ActiveWait", perf.Waiting.PASSIVE: "PassiveWait"}),
-        ),
-    ),
+        (perf.ServerCallKind.GET_RESULT, "GetResult", Row(_CALL, "GetResultServerCall", runnable=_SERVER, waiting=_BLOCKING)),
+    )
 }
 _NOTIFIED = refers_to_several("notifiedFunctions", "Function")
 
@@ -122,57 +105,65 @@ class _Graph:
         self.number = 0
 
     def entries(self, activities: tuple[perf.Activity, ...]) -> list[ProjectObject]:
-        """The entries for activities; sequences are cut where there is a branch, a loop or a group."""
-        result = [next_entry("CallSequence", self.context)]
+        """The entries for activities."""
+        result = self.parts(activities, next_entry("CallSequence", self.context))
+        return result[:-1] if _is_unused(result[-1]) else result
+
+    def parts(self, activities: tuple[perf.Activity, ...], first: ProjectObject) -> list[ProjectObject]:
+        """The entries for activities; sequences are cut where there is a branch, a loop or a group, as the importer of INCHRON does.
+
+        Parameters
+        ----------
+        first : the sequence that they begin with
+        """
+        result = [first]
         for activity in activities:
             match activity:
                 case perf.Group():
-                    result += self.group(activity)
+                    made = self.group(activity)
                 case perf.Switch():
-                    result.append(self.switch(activity))
+                    made = [self.switch(activity)]
                 case perf.ProbabilitySwitch():
-                    result.append(self.probability_switch(activity))
+                    made = [self.probability_switch(activity)]
                 case perf.Loop():
-                    result.append(self.loop(activity))
+                    made = [self.loop(activity)]
                 case _:
                     for item in self.items(activity):
                         result[-1].add("calls", item)
                     continue
-            result.append(next_entry("CallSequence", self.context))
-        return [entry for entry in result if entry.kind != "CallSequence" or entry["calls"]]
+            if _is_unused(result[-1]):
+                result.pop()
+            result += [*made, next_entry("CallSequence", self.context)]
+        return result
 
     def group(self, group: perf.Group) -> list[ProjectObject]:
-        """A sequence with the name of the group, and one beside it for each group within it, as sequences cannot be nested."""
+        """A sequence with the name of the group, and beside it what follows a branch in the group, as sequences cannot be nested."""
         context = self.context
         if not group.ordered:
             context.lost(group, "a group without an order", "its activities are in the order in which they are stated")
-        is_simple = not any(isinstance(each, perf.WITH_PARTS) for each in group.activities)
-        if is_simple:
-            result = [ProjectObject("CallSequence", name=group.name)]
-            for activity in group.activities:
-                for item in self.items(activity):
-                    result[0].add("calls", item)
-        else:
-            result = self.entries(group.activities) or [next_entry("CallSequence", context)]
-            context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
+        first = ProjectObject("CallSequence", name=group.name)
         if not group.interruptible:
-            _enclose(result, group.name, context)
-        if not (is_simple and group.ordered and group.name):
+            first.add("calls", ProjectObject("SuspendAllInterrupts", name=f"ImplicitSuspend_{group.name}"))
+        result = self.parts(group.activities, first)
+        if not group.interruptible:
+            result[-1].add("calls", ProjectObject("ResumeAllInterrupts", name=f"ImplicitResume_{group.name}"))
+        if result != [first]:
+            context.changed(group, "a group with branches, loops or groups in it", "as the entries in it, one after the other")
+        if not (result == [first] and group.ordered and group.name):
             keep_whole(result[0], GROUP, group)
             note(result[0], span=len(result))
         return result
 
     def switch(self, switch: perf.Switch) -> ProjectObject:
-        """The first case whose condition holds."""
+        """The first case whose condition holds; the conditions are numbered after those in their branches."""
         made = next_entry("Switch", self.context)
         made["evaluateConditionsOnEntry"] = True
         for number, case in enumerate(switch.cases):
-            condition = build_condition(case.condition, self.context, case)
-            entry = ProjectObject("SwitchEntry", name=f"SwitchEntry_{number}", condition=condition)
+            entry = ProjectObject("SwitchEntry", name=f"SwitchEntry_{number}", graphEntries=self.entries(case.activities))
+            entry["condition"] = build_condition(case.condition, self.context, case)
             if case.name:
                 note(entry, name=case.name)
             made.add("entries", entry)
-            entry["graphEntries"] = self.entries(case.activities)
         if switch.default is not None:
             made["defaultEntry"] = ProjectObject("SwitchDefault", graphEntries=self.entries(switch.default))
         return made
@@ -188,12 +179,13 @@ class _Graph:
         return made
 
     def loop(self, loop: perf.Loop) -> ProjectObject:
-        """Repeated while the condition holds."""
+        """Repeated while the condition holds; the importer of INCHRON gives no name to its first sequence."""
+        first = ProjectObject("CallSequence")
+        result = self.parts(loop.activities, first)
         made = ProjectObject("WhileLoop", name="WhileLoop")
+        made["graphEntries"] = (result[:-1] if _is_unused(result[-1]) else result) or [first]
         if loop.condition is not None:
             made["condition"] = build_condition(loop.condition, self.context, loop)
-        entries = self.entries(loop.activities)
-        made["graphEntries"] = entries or [next_entry("CallSequence", self.context)]
         return made
 
     def items(self, activity: perf.Activity) -> Iterator[ProjectObject]:
@@ -238,6 +230,12 @@ class _Graph:
                 item.add("dataAccess", data_access(label, kind, context))
                 context.keep(item, activity, "communication", "protection", "times")
                 yield item
+            case perf.Incomplete(label=str(label)) if context.find("DataObject", label) is not None:
+                context.changed(activity, "an access of unknown kind", "as a read, as the importer of INCHRON takes it")
+                item = ProjectObject("ResourceConsumption", name=self.named("LabelAccess_{label}", activity))
+                item.add("dataAccess", data_access(label, perf.AccessKind.READ, context))
+                keep_whole(item, ACTIVITY, activity)
+                yield item
             case perf.ServerCall(kind=call):
                 pattern, row = SERVER_CALLS[call]
                 more = {"blockingType": "NonBlocking"} if call is perf.ServerCallKind.GET_RESULT and not activity.waits else {}
@@ -273,11 +271,8 @@ class _Graph:
             item = ProjectObject(kind, name=kind, event=self.context.need("Event", event, self.context.holder))
             if isinstance(activity, perf.ClearEvent):
                 item["reset"] = True
-            part = replace(activity, events=(event,))
-            if isinstance(activity, perf.SetEvent):
-                self.context.keep(item, part, "process")
-            elif isinstance(activity, perf.WaitEvent):
-                self.context.keep(item, part, "waiting")
+            kept = {perf.SetEvent: ("process",), perf.WaitEvent: ("waiting",)}.get(type(activity), ())
+            self.context.keep(item, replace(activity, events=(event,)), *kept)
             if number:
                 self.context.changed(activity, f"a {type(activity).__name__} with several events", "as one for each event")
             yield item
@@ -290,7 +285,7 @@ class _Graph:
             if mode is not None:
                 yield ProjectObject("ModeSwitchPoint", name=self.named("EnumModeLabelAccess", activity), mode=mode)
                 return
-        kind = {"set": "Set", "increment": "Increment", "decrement": "Decrement"}.get(activity.operation)
+        kind = MODIFICATIONS.get(activity.operation)
         value = whole_number(activity.value) if kind == "Set" else activity.step
         if counter is not None and kind and value is not None:
             name = self.named("NumericModeLabelAccess", activity)
@@ -307,12 +302,6 @@ class _Graph:
         return item
 
 
-def _enclose(entries: list[ProjectObject], name: str, context: Exporting) -> None:
-    """Suspend interrupts before the entries and resume them after; branches need sequences of their own for that."""
-    for place, kind in ((0, "Suspend"), (-1, "Resume")):
-        if entries[place].kind != "CallSequence":
-            entries.insert(0 if place == 0 else len(entries), next_entry("CallSequence", context))
-        item = ProjectObject(f"{kind}AllInterrupts", name=f"Implicit{kind}_{name}")
-        item.owner = entries[place]
-        calls = entries[place].values.setdefault("calls", [])
-        calls.insert(0 if place == 0 else len(calls), item)
+def _is_unused(entry: ProjectObject) -> bool:
+    """Whether it is a sequence without content, which what follows replaces, also if it is that of a group."""
+    return entry.kind == "CallSequence" and not entry["calls"]

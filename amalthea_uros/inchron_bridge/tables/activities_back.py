@@ -15,7 +15,7 @@ from amalthea_uros.inchron_bridge.basics.comments import noted, whole
 from amalthea_uros.inchron_bridge.basics.importing import Importing
 from amalthea_uros.inchron_bridge.basics.seals import require_sealed
 from amalthea_uros.inchron_bridge.basics.values import time_of
-from amalthea_uros.inchron_bridge.tables.activities import ACTIVITY, GROUP, ROWS, SERVER_CALLS
+from amalthea_uros.inchron_bridge.tables.activities import ACCESSES, ACTIVITY, GROUP, MODIFICATIONS, ROWS, SERVER_CALLS
 from amalthea_uros.inchron_bridge.tables.conditions import extract_condition
 from amalthea_uros.inchron_bridge.tables.distributions import extract
 from amalthea_uros.perf import activities as perf
@@ -25,12 +25,8 @@ from amalthea_uros.units import SECOND
 _GENERATED = re.compile(r"CallSequence_\d+")
 _ROWS = {row.kind: row for _, row in ROWS.values()}
 _CALLS = {row.kind: (kind, row) for kind, (_, row) in SERVER_CALLS.items()}
-_ACCESSES = {"Read": perf.AccessKind.READ, "Write": perf.AccessKind.WRITE}
-_MODIFICATIONS = {
-    "Set": perf.ModeOperation.SET,
-    "Increment": perf.ModeOperation.INCREMENT,
-    "Decrement": perf.ModeOperation.DECREMENT,
-}
+_ACCESSES = {name: kind for kind, name in ACCESSES.items()}
+_MODIFICATIONS = {name: operation for operation, name in MODIFICATIONS.items()}
 
 
 def extract_graph(graph: ProjectObject | None, context: Importing) -> tuple[perf.Activity, ...]:

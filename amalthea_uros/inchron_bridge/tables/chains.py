@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.comments import keep_whole, note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.perf import events as perf
 from amalthea_uros.perf.constraints import ChainEnd, ChainSynchronization
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.dataflow.chains import Fork, Unfolded, unfold
+from amalthea_uros.timing.dataflow.untyped_events import is_untyped, readings
 
 #: The trace event of each transition; transitions without one cannot be observed there.
 PROCESS_EVENTS = {
@@ -63,11 +68,12 @@ def build_chains(context: Exporting) -> None:
     for chain in context.system.events.chains:
         try:
             events, left_out = unfold(chain, context.system)
+            ways = [(path, typed) for path in ways_in(events) for typed in _typed_events(path, context.system)]
             builders = [
-                _ChainGraph(f"{chain.name}_{number + 1}" if number else chain.name, context)
-                for number, _ in enumerate(ways_in(events))
+                _ChainGraph(f"{chain.name}_{number + 1}" if number else chain.name, context, typed)
+                for number, (_, typed) in enumerate(ways)
             ]
-            for builder, path in zip(builders, ways_in(events), strict=True):
+            for builder, (path, _) in zip(builders, ways, strict=True):
                 builder.build(path)
         except UnknownError as error:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
@@ -78,7 +84,8 @@ def build_chains(context: Exporting) -> None:
         if not all(builder.is_exact for builder in builders) or events != plain_events(chain):
             keep_whole(graphs[0], CHAIN, chain)
         if len(graphs) > 1:
-            context.changed(chain, "an event chain that begins with several events", "as one graph for each of them")
+            what = "that has events without a type" if ways[0][1] else "that begins with several events"
+            context.changed(chain, f"an event chain {what}", "as one graph for each of them")
             join_items(graphs)
         context.graphs[chain.name] = graphs
         context.register("EventGraph", chain.name, graphs[0])
@@ -109,6 +116,22 @@ def ways_in(events: Unfolded) -> list[Unfolded]:
     return [path for branch in dict.fromkeys(first.branches) for path in ways_in((*branch, *rest))]
 
 
+def _typed_events(path: Unfolded, system: System) -> list[dict[str, perf.Event]]:
+    """The events of a path that have no type with each of those that they may have, as the analysis reads them.
+
+    Raises
+    ------
+    UnknownError : they are in branches, or stand twice.
+    """
+    events = [system.events_by_name[each] for each in path if isinstance(each, str)]
+    if not any(map(is_untyped, events)):
+        return [{}]
+    names = [event.name for event in events]
+    if len(set(names)) < len(path):
+        raise UnknownError("it contains events without a type beside branches, or twice")
+    return [dict(zip(names, reading, strict=True)) for reading in readings(events)]
+
+
 def plain_events(chain: perf.EventChain) -> tuple[str | None, ...]:
     """The events of a chain of which a graph alone says everything: a sequence of steps without gaps and names; else nothing."""
     if chain.items is None:
@@ -127,15 +150,17 @@ class _ChainGraph:
 
     Attributes
     ----------
+    typed : events with other types than their own
     is_exact : whether the trace events say everything of the events
     """
 
-    def __init__(self, name: str, context: Exporting) -> None:
+    def __init__(self, name: str, context: Exporting, typed: Mapping[str, perf.Event] = MappingProxyType({})) -> None:
         self.graph = ProjectObject("EventGraph", name=name)
         self.context = context
+        self.typed = typed
         self.names: set[str] = set()
         self.inner: list[tuple[ProjectObject, str]] = []
-        self.is_exact = True
+        self.is_exact = not typed
 
     def build(self, events: Unfolded) -> None:
         """Make the nodes: first those inside, then the stimulus, then the response, as the importer of INCHRON orders them."""
@@ -170,12 +195,12 @@ class _ChainGraph:
         barrier = ProjectObject(BARRIER, minItems=needed)
         for end in dict.fromkeys(ends):
             link(barrier, end)
-        self.inner.append((barrier, f"{fork.name or self.graph.name}_sync"))
+        self.inner.append((barrier, f"{fork.name or fork.part or self.graph.name}_sync"))
         return barrier
 
     def event(self, name: str) -> ProjectObject:
         """A node for an event, without its name."""
-        event = self.context.system.events_by_name[name]
+        event = self.typed.get(name) or self.context.system.events_by_name[name]
         result, process = trace_event(event, self.context)
         if isinstance(event, perf.StimulusEvent) or (isinstance(event, perf.LabelEvent) and event.runnable is not None):
             self.is_exact = False

@@ -26,7 +26,7 @@ def of_every_core_type(demand: Demand, context: Exporting) -> tuple[Distribution
 
 
 def is_approximated(ticks: Distribution[int]) -> bool:
-    """Whether a project has no distribution of this kind, or only whole numbers for its parameters."""
+    """Whether a project has no distribution of this kind, has another kind for it, too, or only whole numbers for its parameters."""
     match ticks:
         case Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper):
             unbounded = lower is None and upper is None
@@ -35,4 +35,4 @@ def is_approximated(ticks: Distribution[int]) -> bool:
             )
         case Constant() | Boundaries():
             return False
-    return type(ticks).__name__ in ("Statistics", "Bounds", "Weibull")
+    return type(ticks).__name__ in ("Statistics", "Bounds", "Uniform", "Weibull")

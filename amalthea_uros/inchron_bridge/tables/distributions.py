@@ -22,53 +22,43 @@ SAMPLINGS = {
 }
 _SAMPLING_OF = {name: sampling for sampling, name in SAMPLINGS.items()}
 
-#: What the importer of INCHRON assumes where none is given (am2inc, activityGraph.cpp).
-_PER_MILLE = 1.0
-
 
 def build_demand(demand: perf.Distribution[int], context: Exporting, source: Any) -> ProjectObject:
     """A demand in ticks."""
-    return _build(demand, ticks, context, source)
-
-
-def _build(value: Any, unit: Callable[[int], ProjectObject], context: Exporting, source: Any) -> ProjectObject:
     made: dict[str, Any] = {}
-    match value:
+    match demand:
         case perf.Constant(value=only):
-            made = {"type": "Min", "min": unit(only), "max": unit(only)}
+            made = {"type": "Min", "min": ticks(only), "max": ticks(only)}
         case perf.Boundaries(lower=lower, upper=upper, sampling=sampling):
-            made = {"type": SAMPLINGS[sampling], "min": unit(lower), "max": unit(upper)}
+            made = {"type": SAMPLINGS[sampling], "min": ticks(lower), "max": ticks(upper)}
             if sampling is perf.Sampling.DEFAULT:
-                made["mean"] = unit((lower + upper) // 2)
+                made["mean"] = ticks((lower + upper) // 2)
         case perf.Bounds(lower=lower, upper=upper):
-            made = {"type": "Mean", "min": unit(lower), "max": unit(upper), "mean": unit((lower + upper) // 2)}
+            made = {"type": "Mean", "min": ticks(lower), "max": ticks(upper), "mean": ticks((lower + upper) // 2)}
             context.changed(source, "a distribution of which a parameter is missing", "as its bounds")
         case perf.Uniform(lower=lower, upper=upper):
-            made = {"type": "Uniform", "min": unit(lower), "max": unit(upper)}
+            made = {"type": "Uniform", "min": ticks(lower), "max": ticks(upper)}
         case perf.Statistics(lower=lower, average=average, upper=upper):
-            sigma = max(average - lower, upper - average) / 3
-            made = {
-                "type": "Normal",
-                "min": unit(lower),
-                "max": unit(upper),
-                "mean": unit(whole_part(average)),
-                "sigma": unit(whole_part(sigma)),
-            }
+            mean = whole_part(average)
+            sigma = max(mean - lower, upper - mean) / 3
+            made = {"type": "Normal", "mean": ticks(mean), "sigma": ticks(whole_part(sigma))}
+            made |= {"min": ticks(lower), "max": ticks(upper)}
             context.changed(
                 source, "a demand with lower bound, average and upper bound", "as a normal distribution within the bounds"
             )
         case perf.Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper):
-            made = {"type": "Normal", "mean": unit(whole_part(mean)), "sigma": unit(whole_part(deviation))}
-            made |= {"min": unit(lower or 0), "max": unit(upper or 0)}
+            made = {"type": "Normal", "mean": ticks(whole_part(mean)), "sigma": ticks(whole_part(deviation))}
+            made |= {"min": ticks(lower or 0), "max": ticks(upper or 0)}
         case perf.Weibull(lower=lower, average=average, upper=upper, exceeding=exceeding):
-            made = {"type": "WeibullEstimator", "min": unit(lower), "max": unit(upper), "mean": unit(whole_part(average))}
-            made["outlierProbability"] = exceeding / 1000 if exceeding > 0 else _PER_MILLE / 1000
+            made = {"type": "WeibullEstimator", "min": ticks(lower), "max": ticks(upper), "mean": ticks(whole_part(average))}
+            # The importer of INCHRON assumes 1 per mille where none is given (am2inc, activityGraph.cpp).
+            made["outlierProbability"] = (exceeding if exceeding > 0 else 1.0) / 1000
         case perf.Beta(alpha=alpha, beta=beta, lower=lower, upper=upper):
-            made = {"type": "Beta", "alpha": float(alpha), "beta": float(beta), "min": unit(lower), "max": unit(upper)}
+            made = {"type": "Beta", "alpha": float(alpha), "beta": float(beta), "min": ticks(lower), "max": ticks(upper)}
         case perf.Histogram(buckets=buckets):
             entries = [
                 ProjectObject(
-                    "DiscreteDistributionEntry", count=each.occurrences, lower=unit(each.lower), upper=unit(each.upper)
+                    "DiscreteDistributionEntry", count=each.occurrences, lower=ticks(each.lower), upper=ticks(each.upper)
                 )
                 for each in buckets
             ]

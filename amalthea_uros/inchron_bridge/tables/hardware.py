@@ -14,9 +14,9 @@ from amalthea_uros.units import NANOSECOND, SECOND
 #: What the importer of INCHRON makes for stimuli: a clock without drift.
 IDEAL_CLOCK = "IdealClock"
 
-_BITS, _WIDE_BITS = 64, 256
+_NAME, _BITS, _WIDE_BITS = "New Project", 64, 256
 #: Nothing in a model names these; the importer gives them these names (am2inc, relax.cpp).
-_RESPONDER, _TO_SYSTEM = "ResponderPort", "to_SystemInterconnect"
+_RESPONDER = "ResponderPort"
 
 
 def build_hardware(context: Exporting, buses: frozenset[str]) -> None:
@@ -27,6 +27,8 @@ def build_hardware(context: Exporting, buses: frozenset[str]) -> None:
     buses : names of the interconnects that a project has; others are latencies only
     """
     system, model = context.system, context.model
+    names = [structure.name for structure in system.hardware.walk() if structure.kind is perf.StructureKind.SYSTEM]
+    model["name"] = names[-1] if names else _NAME
     for clock in system.hardware.clocks:
         if clock.frequency is None:
             context.changed(clock, "a clock without a frequency", "without one; tools may take 1 GHz for it")
@@ -35,14 +37,14 @@ def build_hardware(context: Exporting, buses: frozenset[str]) -> None:
     free = IDEAL_CLOCK if IDEAL_CLOCK not in system.clocks else f"{IDEAL_CLOCK}_0"
     ideal = ProjectObject("Clock", name=free, period=time(NANOSECOND), range=time(SECOND))
     model.add("clocks", context.register("IdealClock", "", ideal))
-    cpus = []
     for structure in system.hardware.walk():
         if structure.cores:
-            cpus.append(model.add("cpus", _cpu(structure, context, buses)))
+            model.add("cpus", _cpu(structure, context, buses))
+            continue
         for memory in structure.memories:
-            if not structure.cores:
-                model.add("memories", _memory(memory, ideal, context))
-    _connect(cpus, context)
+            model.add("memories", _memory(memory, ideal, context))
+        for interconnect in (each for each in structure.interconnects if each.name in buses):
+            model.add("interconnects", _interconnect(interconnect, ideal, context))
 
 
 def _frequency(clock: perf.Clock, context: Exporting) -> ProjectObject:
@@ -101,15 +103,7 @@ def _memory(memory: perf.Memory, clock: ProjectObject | None, context: Exporting
 
 
 def _cache(cache: perf.Cache, clock: ProjectObject | None, context: Exporting) -> ProjectObject:
-    return _module(
-        "memory.CacheMemory",
-        cache,
-        clock,
-        context,
-        size=context.size(cache.size, cache.name),
-        initiator=ProjectObject("memory.InitiatorPort", name="InitiatorPort"),
-        responder=ProjectObject("memory.ResponderPort", name=_RESPONDER),
-    )
+    return _module("memory.CacheMemory", cache, clock, context, size=context.size(cache.size, cache.name))
 
 
 _SCHEDULING = {
@@ -124,17 +118,13 @@ def _interconnect(item: perf.Interconnect, clock: ProjectObject | None, context:
     return _module("memory.Interconnect", item, clock, context, schedulingPolicy=policy)
 
 
-def _connect(cpus: list[ProjectObject], context: Exporting) -> None:
-    """Connect cores, caches and memories by interconnects, as the importer does for models without any of their own."""
-    memories = context.model["memories"]
-    if any(cpu["interconnects"] for cpu in cpus):
-        return
+def connect_hardware(context: Exporting) -> None:
+    """Connect cores, caches and memories by interconnects, as the importer does for models without any of their own (relax.cpp)."""
+    cpus, memories = context.model["cpus"], context.model["memories"]
     several = len(cpus) + len(memories) > 1
-    upwards = []
-    for cpu in cpus:
-        local = cpu["memories"]
-        if len(cpu["cores"]) + len(local) > 1 or several:
-            upwards.append((cpu, _local_interconnect(cpu, several)))
+    upwards = [
+        (cpu, _local_interconnect(cpu, several)) for cpu in cpus if several or len(cpu["cores"]) + len(cpu["memories"]) > 1
+    ]
     if several:
         top = ProjectObject(
             "memory.Interconnect",
@@ -151,22 +141,29 @@ def _connect(cpus: list[ProjectObject], context: Exporting) -> None:
 
 
 def _local_interconnect(cpu: ProjectObject, several: bool) -> ProjectObject | None:
-    """Make the interconnect of a processor; returns the port to the other processors."""
+    """Make the interconnect of a processor; returns the port to the other processors, which is that of the last cache, if any."""
+    width = cpu["cores"][0]["bitWidth"]
     made = ProjectObject(
         "memory.Interconnect",
         name=f"{cpu.name}_Interconnect",
-        bitWidth=ProjectObject("DataSize", value=_BITS, unit="bit"),
+        bitWidth=ProjectObject("DataSize", value=width["value"], unit=width["unit"]),
         clock=cpu["clock"],
     )
     cpu.add("interconnects", made)
     for core in cpu["cores"]:
         _join(core["initiator"], made.add("responders", ProjectObject("memory.ResponderPort", name=f"to_{core.name}")))
-    upwards = made.add("initiators", ProjectObject("memory.InitiatorPort", name=f"from_{cpu.name}")) if several else None
+    upwards = None
     for memory in cpu["memories"]:
+        if memory["responder"] is None:
+            memory["responder"] = ProjectObject("memory.ResponderPort", name="to_CpuInterconnect")
         if memory.kind == "memory.CacheMemory":
-            memory["initiator"]["name"], memory["responder"]["name"] = _TO_SYSTEM, "to_CpuInterconnect"
+            upwards = memory["initiator"] or ProjectObject("memory.InitiatorPort", name="to_SystemInterconnect")
+            memory["initiator"] = upwards
         port = made.add("initiators", ProjectObject("memory.InitiatorPort", name=f"to_{memory.name}"))
         _join(port, memory["responder"])
+    if several:
+        upwards = upwards or made.add("initiators", ProjectObject("memory.InitiatorPort"))
+        upwards["name"] = f"from_{cpu.name}"
     if not made["initiators"]:
         made.add("initiators", ProjectObject("memory.InitiatorPort", name="InitiatorPort"))
     return upwards

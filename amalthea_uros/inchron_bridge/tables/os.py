@@ -73,11 +73,11 @@ class _SystemBuilder:
         self.root[_CORES] = self.root_cores()
 
     def root_cores(self) -> list[ProjectObject]:
-        """The cores of those that have interrupt service routines, and of the schedulers."""
+        """The cores of the controllers that have interrupt service routines; if they have none, those of the schedulers below."""
         used = {allocation.controller for allocation in self.context.system.mapping.isrs}
-        controllers = [each for each in self.system.interrupt_controllers if each.name in used]
-        result = [self.cores(each) for each in controllers] + [self.cores(each) for each in self.system.schedulers]
-        return list(dict.fromkeys(core for cores in result for core in cores))
+        controllers = [each for each in self.system.interrupt_controllers if each.name in used and each.cores]
+        below = [each for each in self.system.schedulers if each.parent is None]
+        return list(dict.fromkeys(core for each in controllers or below for core in self.cores(each)))
 
     def scheduler(self, scheduler: perf.Scheduler) -> ProjectObject:
         """A scheduler with its policy."""
@@ -128,13 +128,13 @@ def _place_isr(process: ProjectObject, allocation: IsrAllocation | None, context
         note(process, controller=allocation.controller)
         result = context.system.interrupt_controllers.get(allocation.controller)
         process[_CORES] = [context.need("CpuCore", core, process.name) for core in (result.cores if result else ())]
-        process["priority"] = allocation.priority or 0
-        _keep_priority(process, allocation.priority)
+        _set_priority(process, allocation.priority)
     controller.add("schedulables", process)
 
 
-def _keep_priority(process: ProjectObject, priority: int | None) -> None:
+def _set_priority(process: ProjectObject, priority: int | None) -> None:
     """A process of a project always has a priority; that it has none is not the same as 0."""
+    process["priority"] = priority or 0
     if priority is None:
         note(process, priority=None)
 
@@ -144,8 +144,7 @@ def _place_task(process: ProjectObject, allocations: list[TaskAllocation], conte
         global_system(context)
         context.need("Scheduler", DEFAULT, GLOBAL).add("schedulables", process)
     for allocation in allocations[:1]:
-        process["priority"] = allocation.priority or 0
-        _keep_priority(process, allocation.priority)
+        _set_priority(process, allocation.priority)
         process[_CORES] = [context.need("CpuCore", core, process.name) for core in allocation.cores]
         if allocation.deadline is not None:
             process["deadline"] = context.time(allocation.deadline, process.name)

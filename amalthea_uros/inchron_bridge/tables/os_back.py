@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import attrgetter
 
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.orders import in_order
 from amalthea_uros.inchron_bridge.basics.values import time_of
 from amalthea_uros.inchron_bridge.tables.os import DEFAULT, FURTHER, GLOBAL, POLICIES
 from amalthea_uros.perf import os as perf
@@ -49,6 +51,7 @@ class _SystemReader:
         self.result = result
         self.schedulers: list[perf.Scheduler] = []
         self.controllers: list[perf.InterruptController] = []
+        self.known = {context.name_of("CpuCore", core) for cpu in context.model["cpus"] for core in cpu["cores"]}
 
     def extract(self) -> None:
         for root in self.system["rtosConfig"]["schedulables"]:
@@ -56,12 +59,10 @@ class _SystemReader:
         if self.system.name == GLOBAL and not self.controllers:
             return
         kept = self.context.fields(self.system, perf.OperatingSystem, ("overhead", "protection"))
-        order = self.context.noted(self.system).get("schedulers")
-        places = {name: place for place, name in enumerate(order) if isinstance(name, str)} if isinstance(order, list) else {}
-        self.schedulers.sort(key=lambda each: places.get(each.name, len(places)))
+        schedulers = in_order(self.schedulers, attrgetter("name"), self.context.noted(self.system).get("schedulers"))
         made = perf.OperatingSystem(
             name=self.context.name("System", self.system),
-            schedulers=tuple(self.schedulers),
+            schedulers=schedulers,
             interrupt_controllers=tuple(self.controllers),
             origin=self.context.located(self.system),  # type: ignore[arg-type]
             **kept,
@@ -88,8 +89,7 @@ class _SystemReader:
 
     def has_cores(self, controller: perf.InterruptController) -> bool:
         """Whether the cores that a comment names are those of the project."""
-        known = {self.context.name_of("CpuCore", core) for cpu in self.context.model["cpus"] for core in cpu["cores"]}
-        return known.issuperset(controller.cores) and controller.executing_core in (*known, None)
+        return self.known.issuperset(controller.cores) and controller.executing_core in (*self.known, None)
 
     def isrs(self, processes: list[ProjectObject], controllers: dict[str, str], root: ProjectObject) -> None:
         """The allocations of interrupt service routines."""
@@ -122,8 +122,7 @@ class _SystemReader:
             "parent": perf.Parent(scheduler=above, priority=item["priority"]) if above is not None else None,
             **kept,
         }
-        known = {context.name_of("CpuCore", core) for cpu in context.model["cpus"] for core in cpu["cores"]}
-        if values.get("executing_core") not in known:
+        if values.get("executing_core") not in self.known:
             values.pop("executing_core", None)
         cores = self.cores(item)
         self.schedulers.append(perf.Scheduler(name=name, cores=cores, origin=context.located(item), **values))  # type: ignore[arg-type]

@@ -59,7 +59,7 @@ def _is_plain(limit: Any, made: ProjectObject) -> bool:
     """Whether the requirement alone says everything of the limit."""
     match limit:
         case perf.LatencyConstraint():
-            return made.kind == CHAIN_REQUIREMENT and limit.jitter is None and limit.minimum != 0
+            return made.kind == CHAIN_REQUIREMENT and made["evaluate"] and limit.jitter is None and limit.minimum != 0
         case perf.Requirement(severity=None, process=str(), limit=perf.TimeLimit(bound=perf.Bound.UPPER)):
             return made.kind in OF_PROCESS.values()
     return False
@@ -77,8 +77,9 @@ def _latency(limit: perf.LatencyConstraint, context: Exporting) -> list[ProjectO
     graphs = context.graphs.get(limit.chain)
     if graphs is None:
         raise UnknownError("there is no event chain for it")
-    if limit.minimum is None and limit.maximum is None:
-        raise UnknownError("it has neither a minimum nor a maximum")
+    is_limit = limit.minimum is not None or limit.maximum is not None
+    if not is_limit:
+        context.changed(limit, "a limit without a minimum or a maximum", "as a requirement that is not evaluated")
     return [
         ProjectObject(
             CHAIN_REQUIREMENT,
@@ -86,7 +87,8 @@ def _latency(limit: perf.LatencyConstraint, context: Exporting) -> list[ProjectO
             eventChain=graph,
             start=[graph["initialNode"]["first"]],
             end=[node["first"] for node in graph["terminalNodes"]],
-            interval=_interval(limit.minimum, limit.maximum, context, limit.name),
+            interval=_interval(limit.minimum, limit.maximum, context, limit.name) if is_limit else None,
+            evaluate=None if is_limit else False,
             strategy="FirstLast" if limit.kind is perf.LatencyKind.AGE else "FirstFirst",
         )
         for number, graph in enumerate(graphs)

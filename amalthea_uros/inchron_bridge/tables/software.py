@@ -9,11 +9,11 @@ from amalthea_uros.inchron_bridge.basics.comments import note
 from amalthea_uros.inchron_bridge.basics.exporting import Exporting
 from amalthea_uros.inchron_bridge.tables.activities import build_graph
 from amalthea_uros.inchron_bridge.tables.conditions import build_condition, whole_number
-from amalthea_uros.inchron_bridge.tables.os import global_system
+from amalthea_uros.inchron_bridge.tables.os import GLOBAL, global_system
 from amalthea_uros.inchron_bridge.tables.rows import Row
-from amalthea_uros.inchron_bridge.tables.stimuli import add_activations
+from amalthea_uros.inchron_bridge.tables.stimuli import add_activations, add_conditions
 from amalthea_uros.perf import software as perf
-from amalthea_uros.perf.activities import LabelAccess, SenderReceiverAccess, called_runnables, walk
+from amalthea_uros.perf.activities import Incomplete, LabelAccess, SenderReceiverAccess, called_runnables, walk
 from amalthea_uros.perf.os import Semaphore
 
 #: The trace events of each kind of object, with their types where they differ from the names.
@@ -72,28 +72,20 @@ def _build_modes(context: Exporting) -> None:
         mode = modes.get(label.mode or "")
         if mode is None:
             context.lost(label, "a mode label without a mode")
-        elif mode.literals:
-            made = ProjectObject(
-                "ModeGroup", name=label.name, modes=[ProjectObject("Mode", name=each) for each in mode.literals]
-            )
-            first = next((each for each in made["modes"] if each.name == label.initial), None)
-            made["initialMode"] = first or made["modes"][0]
-            _keep_initial(made, label, is_known=first is not None, context=context)
-            context.model.add("globalModeGroups", context.register("ModeGroup", label.name, made))
-            note(made, mode=mode.name)
+            continue
+        if mode.literals:
+            literals = [ProjectObject("Mode", name=each) for each in mode.literals]
+            initial: Any = next((each for each in literals if each.name == label.initial), None)
+            made = ProjectObject("ModeGroup", name=label.name, modes=literals, initialMode=initial or literals[0])
         else:
-            number = whole_number(label.initial)
-            made = ProjectObject("Counter", name=label.name, initialValue=number or 0)
-            _keep_initial(made, label, is_known=number is not None, context=context)
-            context.model.add("globalCounters", context.register("Counter", label.name, made))
-            note(made, mode=mode.name)
-
-
-def _keep_initial(made: ProjectObject, label: perf.ModeLabel, *, is_known: bool, context: Exporting) -> None:
-    """A project always has an initial value; that it is unknown is not the same as the first one."""
-    if not is_known:
-        note(made, initial=label.initial)
-        context.changed(label, "a mode label without a valid initial value", "with the first one, or 0")
+            initial = whole_number(label.initial)
+            made = ProjectObject("Counter", name=label.name, initialValue=initial or 0)
+        if initial is None:
+            # A project always has an initial value; that it is unknown is not the same as the first one.
+            note(made, initial=label.initial)
+            context.changed(label, "a mode label without a valid initial value", "with the first one, or 0")
+        context.model.add(f"global{made.kind}s", context.register(made.kind, label.name, made))
+        note(made, mode=mode.name)
 
 
 def build_graphs(context: Exporting) -> None:
@@ -106,10 +98,11 @@ def build_graphs(context: Exporting) -> None:
             note(context.need("Process", process.name, process.name), stimuli=list(process.stimuli))
         _set_graph("Process", process, context)
     for runnable in software.runnables:
+        _set_graph("Function", runnable, context)
         if runnable.condition is not None:
             # A function cannot have a condition; the importer of INCHRON writes it beside the function, too.
             build_condition(runnable.condition, context, runnable)
-        _set_graph("Function", runnable, context)
+    add_conditions(context)
 
 
 def _set_graph(kind: str, item: Any, context: Exporting) -> None:
@@ -139,28 +132,33 @@ def _component(system: ProjectObject | None, context: Exporting) -> ProjectObjec
     system = system or global_system(context)
     for result in system["components"]:
         return result  # type: ignore[no-any-return]
-    is_global = system is context.find("System", "__GLOBAL__")
+    is_global = system is context.find("System", GLOBAL)
     return system.add("components", ProjectObject("Component", name=system.name if is_global else f"{system.name}_Component"))
 
 
 def _owners(context: Exporting) -> dict[tuple[str, str], ProjectObject]:
-    """The operating system of each function, variable and event that a process uses, by kind and name."""
+    """The operating system of each function, variable and event that a process uses, by kind and name.
+
+    What several use is of the first whose process uses it directly, or else of the one of the first function that does, in the order
+    in which functions are found: first those of all processes (am2inc, relax.cpp).
+    """
     result: dict[tuple[str, str], ProjectObject] = {}
     system = context.system
-    for os in context.model["systems"]:
-        below = {item.name for item in os.walk() if item.kind == "Process"}
-        waiting = [process.activities for process in system.processes.values() if process.name in below]
-        seen: set[str] = set()
-        while waiting:
-            body = waiting.pop()
-            for activity in walk(body):
-                for event in getattr(activity, "events", ()):
-                    result.setdefault(("Event", event), os)
-                if isinstance(activity, LabelAccess | SenderReceiverAccess):
-                    result.setdefault(("DataObject", activity.label), os)
-            for name in called_runnables(body):
-                if name not in seen and name in system.runnables:
-                    seen.add(name)
-                    result.setdefault(("Function", name), os)
-                    waiting.append(system.runnables[name].activities)
+    waiting = [
+        (system.processes[item.name].activities, os)
+        for os in context.model["systems"]
+        if os.name != GLOBAL
+        for item in os.walk()
+        if item.kind == "Process"
+    ]
+    for body, os in waiting:  # Functions that are found are appended.
+        for activity in walk(body):
+            for event in getattr(activity, "events", ()):
+                result.setdefault(("Event", event), os)
+            if isinstance(activity, LabelAccess | SenderReceiverAccess | Incomplete) and activity.label is not None:
+                result.setdefault(("DataObject", activity.label), os)
+        for name in called_runnables(body):
+            if name in system.runnables and ("Function", name) not in result:
+                result["Function", name] = os
+                waiting.append((system.runnables[name].activities, os))
     return result

@@ -7,6 +7,7 @@ from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
 from amalthea_uros.inchron_bridge.basics.importing import Importing
+from amalthea_uros.inchron_bridge.basics.orders import in_order
 from amalthea_uros.inchron_bridge.basics.values import size_of
 from amalthea_uros.inchron_bridge.tables.activities_back import extract_graph
 from amalthea_uros.inchron_bridge.tables.os_back import processes_of
@@ -22,14 +23,8 @@ def name_software(context: Importing, model: ProjectObject) -> None:
     for process in processes_of(model):
         context.name("Process", process)
     for item in model.walk():
-        if item.kind == "Function":
-            context.name("Function", item)
-        elif item.kind == "memory.DataObject":
-            context.name("DataObject", item)
-        elif item.kind == "Event":
-            context.name("Event", item)
-        elif item.kind == "Semaphore":
-            context.name("Semaphore", item)
+        if item.kind in ("Function", "memory.DataObject", "Event", "Semaphore"):
+            context.name(item.kind.rpartition(".")[2], item)
         elif item.kind in ("ModeGroup", "Counter"):
             # Both become mode labels, whose names are unique.
             context.share(item.kind, item, context.name("ModeLabel", item))
@@ -49,7 +44,7 @@ def extract_software(context: Importing, model: ProjectObject, stimuli: dict[Pro
         activities = (*extract_graph(process["callGraph"], context), *_not_understood(process, context))
         known: dict[str, Any] = {
             "name": context.name_of("Process", process),
-            "stimuli": _in_order(stimuli.get(process, []), context.noted(process).get("stimuli")),
+            "stimuli": in_order(dict.fromkeys(stimuli.get(process, [])), str, context.noted(process).get("stimuli")),
             "activities": activities,
             "origin": context.located(process),
         }
@@ -74,12 +69,6 @@ def extract_software(context: Importing, model: ProjectObject, stimuli: dict[Pro
         modes=tuple(modes),
         mode_labels=tuple(labels),
     )
-
-
-def _in_order(names: list[str], order: Any) -> tuple[str, ...]:
-    """The names of stimuli, in the order that a comment keeps."""
-    places = {name: place for place, name in enumerate(order) if isinstance(name, str)} if isinstance(order, list) else {}
-    return tuple(sorted(dict.fromkeys(names), key=lambda name: places.get(name, len(places))))
 
 
 def _not_understood(process: ProjectObject, context: Importing) -> Iterator[Incomplete]:

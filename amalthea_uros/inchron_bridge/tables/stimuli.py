@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from amalthea_uros.inchron.objects import ProjectObject
@@ -14,6 +15,7 @@ from amalthea_uros.perf import distributions
 from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import highest, lowest
+from amalthea_uros.units import Time
 
 SCENARIO = "DefaultScenario"
 
@@ -168,28 +170,37 @@ def _relative(stimulus: perf.RelativePeriodic, context: Exporting) -> ProjectObj
 
 
 def _other(stimulus: perf.Stimulus, context: Exporting) -> ProjectObject:
-    """A substitute for a stimulus that a project cannot have: its highest rate, or nothing if that is unknown."""
-    span = context.iterations.get(stimulus.name)
-    rate = highest_rate(stimulus)
-    if span is not None:
-        shortest, longest = span
-        variation = _variation("Uniform", context, "", max=longest - shortest)
-        made = _random(stimulus.name, shortest, context, "", variation=variation, relative=True)
-        context.changed(
-            stimulus, "the iterations of an executor", "as activations between the shortest and the longest iteration"
-        )
-    elif rate is not None:
-        period, distance = rate
-        made = _random(stimulus.name, period, context, "", distance=distance)
-        context.changed(stimulus, type(stimulus).__name__, "as activations at the highest rate that lasts")
-    else:
-        made = _generator(LIST, stimulus.name, context)
-        context.lost(stimulus, type(stimulus).__name__, "nothing is activated there; only amuros reads it, in a comment")
+    """A stimulus that a project cannot have, as the one that comes closest, or nothing if that is unknown."""
+    closest, what, how = substitute(stimulus, context.iterations)
+    match closest:
+        case perf.RelativePeriodic():
+            made = _relative(closest, context)
+        case perf.Periodic():
+            made = _periodic(closest, context)
+        case _:
+            made = _generator(LIST, stimulus.name, context)
+            context.lost(stimulus, what, "nothing is activated there; only amuros reads it, in a comment")
+    if closest is not None:
+        context.changed(stimulus, what, how)
     keep_whole(made, STIMULUS, stimulus)
     return made
 
 
-def highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
+def substitute(stimulus: perf.Stimulus, iterations: Mapping[str, tuple[Time, Time]]) -> tuple[perf.Stimulus | None, str, str]:
+    """The stimulus that comes closest to one that INCHRON has not, None if it is unknown; and the words for the two."""
+    kind, known = type(stimulus).__name__, {"name": stimulus.name, "condition": stimulus.condition, "origin": stimulus.origin}
+    if stimulus.name in iterations:
+        shortest, longest = iterations[stimulus.name]
+        distance = distributions.Uniform(lower=shortest, upper=longest)
+        how = "as activations between the shortest and the longest iteration"
+        return perf.RelativePeriodic(**known, distance=distance), "the iterations of an executor", how  # type: ignore[arg-type]
+    if (rate := _highest_rate(stimulus)) is not None:
+        closest = perf.Periodic(**known, period=rate[0], min_distance=rate[1])  # type: ignore[arg-type]
+        return closest, kind, "as activations at the highest rate that lasts"
+    return None, kind, ""
+
+
+def _highest_rate(stimulus: perf.Stimulus) -> tuple[int, int | None] | None:
     """The least period that lasts, and the least distance; None if they are unknown."""
     match stimulus:
         case perf.ArrivalCurve(points=points):
@@ -210,7 +221,7 @@ def add_activations(process: Any, context: Exporting) -> None:
         if holder is None or stimulus is None:
             context.need("Stimulus", name, process.name)
             continue
-        feature = "callGraph" if holder.kind == "ActivationConnection" else "targets"
+        feature = _feature(holder)
         if feature not in holder.values:
             holder[feature] = ProjectObject("CallGraph")
         item = ProjectObject(
@@ -231,8 +242,21 @@ def _sequence(graph: ProjectObject, stimulus: perf.Stimulus, context: Exporting)
         return graph.add("graphEntries", next_entry("CallSequence", context))
     switch = next_entry("Switch", context)
     switch["evaluateConditionsOnEntry"] = True
-    condition = build_condition(stimulus.condition, context, stimulus)
-    entry = ProjectObject("SwitchEntry", name="SwitchEntry_0", condition=condition)
-    switch.add("entries", entry)
+    entry = switch.add("entries", ProjectObject("SwitchEntry", name="SwitchEntry_0"))
     graph.add("graphEntries", switch)
     return entry.add("graphEntries", next_entry("CallSequence", context))
+
+
+def add_conditions(context: Exporting) -> None:
+    """Make the conditions of stimuli, which are numbered after those of the software, also of stimuli that activate nothing."""
+    for stimulus in context.system.stimuli.stimuli:
+        if stimulus.condition is not None:
+            condition = build_condition(stimulus.condition, context, stimulus)
+            holder = context.need("Stimulus", stimulus.name, stimulus.name)
+            for switch in holder[_feature(holder)]["graphEntries"] if _feature(holder) in holder.values else ():
+                switch["entries"][0]["condition"] = condition
+
+
+def _feature(holder: ProjectObject) -> str:
+    """The feature of a generator or connection with its activations."""
+    return "callGraph" if holder.kind == "ActivationConnection" else "targets"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 
-from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import ChainReference, EventChain, EventSet, Parallel, Segment
 from amalthea_uros.perf.events import Sequence as InSequence
@@ -30,11 +30,13 @@ class Fork:
     branches : sequences of events and further forks
     needed : how many of them have to complete
     name : of the set of events that it represents, if any
+    part : name of the chain or segment that has the parts
     """
 
     branches: tuple[Unfolded, ...]
     needed: int
     name: str = ""
+    part: str = field(default="", compare=False)
 
 
 #: Names of events, and forks.
@@ -118,7 +120,7 @@ class _Unfolding:
                 inner: Unfolded = tuple(part for each in self._parts(items) for part in each)
             case Parallel(items=items, completed=completed) if items:
                 branches = tuple(self._parts(items))
-                inner = (Fork(branches, min(max(completed, 1), len(branches))),)
+                inner = (Fork(branches, min(max(completed, 1), len(branches)), part=item.name),)
             case _:
                 inner = ()
         start, end = self._event(item.stimulus), self._event(item.response)
@@ -185,7 +187,7 @@ def _without(fork: Fork, event: str, at_start: bool) -> Fork:
             return branch[1:] if branch[:1] == (event,) else branch
         return branch[:-1] if branch[-1:] == (event,) else branch
 
-    return Fork(tuple(map(trimmed, fork.branches)), fork.needed, fork.name)
+    return replace(fork, branches=tuple(map(trimmed, fork.branches)))
 
 
 def sequences(unfolded: Unfolded) -> list[tuple[str, ...]]:

@@ -25,6 +25,7 @@ from amalthea_uros.metamodel.classes import (
     StringObject,
     Switch,
     Task,
+    WhileLoop,
 )
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import Downgraded, drops, model_rule
@@ -69,8 +70,9 @@ def _is_of_same_kind(first: ModeLabel, second: ModeLabel) -> bool:
 
 @model_rule("INC-SW-GROUPNAME", Group)
 def _check_group_name(element: Group, context: Context) -> Iterator[str]:
-    if element.name and element.items and isinstance(element.items[0], Switch | ModeSwitch | ProbabilitySwitch):
-        yield f"the name of the group {element.name!r} is dropped by am2inc, because it begins with a {type(element.items[0]).__name__}"
+    first = element.items[0] if element.name and element.items and element.interruptible is not False else None
+    if isinstance(first, Group | Switch | ModeSwitch | ProbabilitySwitch | WhileLoop):
+        yield f"the name of the group {element.name!r} is dropped by am2inc, because it begins with a {type(first).__name__}"
 
 
 #: The orders in which a group of a callback server can dispatch its services.
