@@ -192,7 +192,7 @@ class Trial:
                 if _applied(candidate, self.present) is None:
                     return
                 edited = edit_description(self.source.text, self.source.path, candidate.changes)
-                candidate = replace(candidate, changes=self.source.changes_of(edited.stated), is_stated=True)
+                candidate = replace(candidate, changes=self.source.changes_of(edited.assignments), is_stated=True)
             if self.source is None:
                 changed = _applied(candidate, self.present)
             else:

@@ -11,7 +11,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key_names import only_one
 from amalthea_uros.design.description.keys import DescriptionKey, Holder, matching, short_name
-from amalthea_uros.design.description.text_edits import Path, Value, has_mapping, value_text
+from amalthea_uros.design.description.text_edits import Path, Value, has_mapping, value_text, with_value
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.nodes import plain, read_nodes
@@ -167,6 +167,13 @@ def is_stated_by_parts(key: DescriptionKey) -> bool:
     """Whether a key is an execution time that depends on the hardware, or was measured."""
     section = getattr(key.section, key.field, None)
     return isinstance(section, ExecutionTimeSection) and section.on is not None
+
+
+def apply_assignments(text: str, edits: Iterable[Assignment]) -> str:
+    """The text with other values."""
+    for each in edits:
+        text = with_value(text, each.path, each.value, each.instead_of)
+    return text
 
 
 def assignments(text: str, pairs: Iterable[tuple[DescriptionKey, Change]]) -> tuple[Assignment, ...]:
