@@ -174,11 +174,3 @@ def apply_assignments(text: str, edits: Iterable[Assignment]) -> str:
     for each in edits:
         text = with_value(text, each.path, each.value, each.instead_of)
     return text
-
-
-def assignments(text: str, pairs: Iterable[tuple[DescriptionKey, Change]]) -> tuple[Assignment, ...]:
-    """The edits for changes of keys; raises as `Assignments.add`."""
-    collected = Assignments(text, {})
-    for key, change in pairs:
-        collected.add(key, change)
-    return collected.every
