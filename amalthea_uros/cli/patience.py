@@ -90,11 +90,12 @@ def working(label: str, total: int = 0) -> Iterator[Progress]:
         _present.pop()
 
 
-def with_progress(name: str, callback: Callable[..., Any]) -> Callable[..., Any]:
+def with_progress(name: str, callback: Callable[..., Any] | None) -> Callable[..., Any]:
     """The function of a command that says on a terminal what it does once that takes longer than two seconds.
 
     Files and pipes get nothing, as the line is for people who wait.
     """
+    assert callback is not None
 
     @wraps(callback)
     def run(**values: Any) -> None:
