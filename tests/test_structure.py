@@ -23,9 +23,9 @@ LINES = {
     "am": 2,
     "analyze": 8902,
     "bridge": 2873,
-    "cli": 2510,
+    "cli": 2562,
     "compare": 3862,
-    "design": 6641,
+    "design": 6578,
     "diagnostics": 43,
     "difference": 790,
     "editor": 656,
@@ -56,7 +56,7 @@ LINES = {
 #: Files may import from this many modules at most; those of the table do so still, and none more.
 IMPORTS = 25
 MORE_IMPORTS = {
-    "cli/compare.py": 27,
+    "cli/compare.py": 26,
     "report/records.py": 33,
     "services/analyze.py": 30,
     "services/check.py": 28,

@@ -111,8 +111,7 @@ def analyze(
         refuse_input(target, "-o")
     outputs = beside_files(outputs, [("-o", target)])
     is_whole = chain is None and explained is None
-    with working("Analyzing"):
-        result = analyze_files(paths, settings, changes=changes, all_methods=method == "all", with_missing=is_whole, **wanted)
+    result = analyze_files(paths, settings, changes=changes, all_methods=method == "all", with_missing=is_whole, **wanted)
     if explained is not None:
         from amalthea_uros.services.explain import explain
 

@@ -10,7 +10,6 @@ import click
 from amalthea_uros._internal.files import STANDARD_INPUT
 from amalthea_uros.cli.output import Output, beside_files, output_option, show_text, write_outputs
 from amalthea_uros.cli.parameters import INPUT, OUTPUT, Several, several
-from amalthea_uros.cli.patience import working
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.check import CheckStatistics, add_rules, check_files, write_baseline
 from amalthea_uros.services.files import FilesDiff
@@ -111,8 +110,7 @@ def check(
         if show_diff:
             show_text(FilesDiff(repairs.changed, "repaired"))
             sys.exit(1 if repairs.changed else 0)
-    with working("Checking", is_computing=False):
-        result = check_files(paths, settings, with_details=with_details, **which)
+    result = check_files(paths, settings, with_details=with_details, **which)
     if new_baseline is not None:
         write_baseline(result, new_baseline)
     write_outputs(outputs, result, CheckStatistics(result) if statistics else None)

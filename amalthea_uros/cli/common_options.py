@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+
 import click
 
+from amalthea_uros.cli.patience import WORK, with_progress
 from amalthea_uros.cli.watch import repeat_on_change
 from amalthea_uros.report.basics.display import DISPLAY, Colours, Display
 
@@ -13,6 +16,8 @@ _WATCHING = frozenset({"analyze", "build", "check", "report"})
 
 def with_common_options(command: click.Command) -> click.Command:
     """A command that was just imported, with the options that all have after its own ones."""
+    if command.name in WORK:
+        command.callback = with_progress(command.name, command.callback)
     if command.name in _WATCHING:
         command.params.append(click.Option(["--watch"], is_flag=True, help="Run again whenever an input file changes."))
         command.callback = repeat_on_change(command.callback)
@@ -60,7 +65,19 @@ def _show_log(_context: click.Context, _parameter: click.Parameter, value: bool)
         return
     import logging
 
-    handler = logging.StreamHandler()
+    handler = logging.StreamHandler(_StandardError())
     logger = logging.getLogger("amalthea_uros")
     logger.handlers, logger.propagate = [handler], False
     logger.setLevel(logging.INFO)
+
+
+class _StandardError:
+    """Standard error as it is when something is written: a line of progress may be in the way."""
+
+    def write(self, text: str) -> int:
+        """Write a text."""
+        return sys.stderr.write(text)
+
+    def flush(self) -> None:
+        """Write what is buffered."""
+        sys.stderr.flush()

@@ -26,7 +26,6 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parameters import DESCRIPTION, INPUT, PICTURE, Parsed, assignment
-from amalthea_uros.cli.patience import working
 from amalthea_uros.compare.calibration.calibration import calibrate_file
 from amalthea_uros.compare.calibration.options import FIT_FORM, AgentFit, CalibrationOptions, Form, parse_fit
 from amalthea_uros.compare.comparing import CompareOptions
@@ -139,8 +138,7 @@ def compare(
         overheads=dict(overheads),
         uncertainty=uncertainty,
     )
-    with working("Comparing"):
-        result = compare_files(model, traces, options, reading, settings=settings, changes=changes)
+    result = compare_files(model, traces, options, reading, settings=settings, changes=changes)
     if picture is not None:
         from amalthea_uros.report.result_pictures import comparison_picture
 
@@ -216,8 +214,7 @@ def calibrate(
         refuse_input(target, "-o")
     is_diff = target is None or is_dry_run
     outputs = _beside_diff(outputs) if is_diff else beside_files(outputs, [("-o", target)])
-    with working("Calibrating", is_computing=False):
-        found = calibrate_file(description, [measure_file(trace, reading) for trace in traces], options)
+    found = calibrate_file(description, [measure_file(trace, reading) for trace in traces], options)
     show_findings(found.findings)
     if is_diff:
         show_text(FilesDiff((FileChange(found.path, found.before, found.text),), "calibrated"))

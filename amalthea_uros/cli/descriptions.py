@@ -20,7 +20,6 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parameters import DESCRIPTION, INPUT, MODEL, OUTPUT, Offer
-from amalthea_uros.cli.patience import working
 from amalthea_uros.diagnostics import Severity, worst
 from amalthea_uros.metamodel.versions import supported_versions, version_key
 from amalthea_uros.services.init import DEFAULT_BOARD, catalogue, example_names, init_from_board, init_from_example
@@ -86,8 +85,7 @@ def import_(sources: tuple[Path, ...], target: Path, board: str | None, force: b
             raise click.UsageError("--board is for source code; a recording of ROS 2 is that of the host")
         result = import_recording(sources[0], target, force=force)
     else:
-        with working("Reading", is_computing=False):
-            result = import_code(sources, target, board=board, force=force)
+        result = import_code(sources, target, board=board, force=force)
     show_findings(result.findings)
     if not is_stream(target):
         show_text(result)
@@ -134,10 +132,9 @@ def build(
 
     is_filter = target is None and description == STANDARD_INPUT
     outputs = beside_files(outputs, [("-o", STANDARD_OUTPUT if is_filter else target)])
-    with working("Building", is_computing=False):
-        result = build_file(
-            description, target, version, platform, compress, force, with_bus=with_bus, tool=BuildTarget(tool) if tool else None
-        )
+    result = build_file(
+        description, target, version, platform, compress, force, with_bus=with_bus, tool=BuildTarget(tool) if tool else None
+    )
     show_findings(result.findings)
     show_summaries(result.model, project_settings(description).targets)
     write_outputs(outputs, result)

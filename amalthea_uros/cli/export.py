@@ -14,7 +14,6 @@ from amalthea_uros._internal.files import STANDARD_OUTPUT, is_stream
 from amalthea_uros._version import __version__
 from amalthea_uros.cli.output import show_findings
 from amalthea_uros.cli.parameters import INPUT, OUTPUT_FILE
-from amalthea_uros.cli.patience import working
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import AmurosError
 from amalthea_uros.inchron.facts import VERSION
@@ -145,16 +144,15 @@ def export(
     elif no_stable:
         ids = uuid4()
     try:
-        with working("Exporting"):
-            result = service.export(
-                paths,
-                target or STANDARD_OUTPUT,
-                ids,
-                mapping=mapping,
-                with_memories=not no_memory_accesses,
-                like_importer=is_imitation,
-                write=not is_dry,
-            )
+        result = service.export(
+            paths,
+            target or STANDARD_OUTPUT,
+            ids,
+            mapping=mapping,
+            with_memories=not no_memory_accesses,
+            like_importer=is_imitation,
+            write=not is_dry,
+        )
     except AmurosError as error:
         if not is_importer:
             raise

@@ -14,7 +14,6 @@ import click
 from amalthea_uros.cli.options import all_of, raw_names_option
 from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_findings, write_outputs
 from amalthea_uros.cli.parameters import INPUT, Parsed, assignment, picture_path
-from amalthea_uros.cli.patience import working
 from amalthea_uros.compare.measured.columns import FORM as COLUMN_FORM
 from amalthea_uros.compare.measured.columns import VALID_FORM, parse_column, parse_unit, parse_valid_rows
 from amalthea_uros.compare.measured.events import begins_of
@@ -155,8 +154,7 @@ def measure(
     """
     outputs = checked_outputs(outputs, [("--histogram", path) for _, path in histograms])
     begins = ModelBegins() if model is None else begins_of(open_system(model).system)
-    with working("Reading", is_computing=False):
-        found = measure_file(trace, replace(reading, select=select, begins=begins))
+    found = measure_file(trace, replace(reading, select=select, begins=begins))
     show_findings(found.findings)
     if histograms:
         from amalthea_uros.report.result_pictures import histogram_picture

@@ -55,8 +55,7 @@ def diff(old: Path, new: Path, with_impact: bool, outputs: tuple[Output, ...]) -
     """
     from amalthea_uros.services import diff as service
 
-    with working("Comparing", is_computing=with_impact):
-        result = service.diff(old, new, with_impact=with_impact)
+    result = service.diff(old, new, with_impact=with_impact)
     show_result(result, outputs)
     sys.exit(1 if result.changes or result.described else 0)
 
@@ -82,7 +81,7 @@ def fmt(paths: tuple[Path, ...], check: bool, show_diff: bool) -> None:
 
 def _with_progress(items: Sequence[T]) -> Iterator[T]:
     """The items, with the number of those that are finished on a terminal."""
-    with working("Migrating", len(items), is_computing=False) as progress:
+    with working("Migrating", len(items)) as progress:
         for item in items:
             yield item
             progress.step()

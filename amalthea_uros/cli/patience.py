@@ -1,21 +1,48 @@
-"""A line on the terminal while something takes long: the work, how much of it is done, and for how long so far."""
+"""A line on the terminal while a command takes long: the work, how much of it is done, and for how long so far."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import Event, Thread
+from functools import wraps
+from threading import Event, RLock, Thread
 from time import monotonic
-from typing import TextIO
+from typing import Any, TextIO, cast
 
 from amalthea_uros._internal.machine_code import is_available
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.report.basics.display import is_brief
+from amalthea_uros.report.writers.terminal import Terminal
 
 #: Seconds that nobody minds.
 PATIENCE = 2.0
 FASTER = "; faster: pip install 'amuros[fast]'"
+
+#: Command -> what it does. The others show something that is at hand, or wait for a client.
+WORK = {
+    "import": "Reading",
+    "build": "Building",
+    "generate": "Generating",
+    "check": "Checking",
+    "analyze": "Analyzing",
+    "chains": "Following paths",
+    "simulate": "Simulating",
+    "report": "Analyzing and simulating",
+    "sweep": "Analyzing",
+    "optimize": "Judging designs",
+    "measure": "Measuring",
+    "compare": "Comparing",
+    "calibrate": "Calibrating",
+    "info": "Reading",
+    "diff": "Comparing",
+    "fmt": "Formatting",
+    "migrate": "Migrating",
+    "export": "Exporting",
+    "rules": "Reading rules",
+}
+#: What machine code makes faster.
+_COMPUTING = {"analyze", "chains", "simulate", "report", "sweep", "optimize", "compare", "export"}
 
 
 @dataclass(slots=True)
@@ -29,7 +56,7 @@ class Progress:
     """
 
     label: str
-    total: int
+    total: int = 0
     done: int = 0
 
     def __str__(self) -> str:
@@ -44,42 +71,120 @@ class Progress:
         self.done = done
 
 
-@contextmanager
-def working(label: str, total: int = 0, *, is_computing: bool = True) -> Iterator[Progress]:
-    """Say on a terminal that something is in progress once it takes longer than two seconds, and how it becomes faster.
+#: What the present command does, and the parts of it that it is in.
+_present: list[Progress] = []
 
-    Files and pipes get nothing, as the line is for people who wait.
+
+@contextmanager
+def working(label: str, total: int = 0) -> Iterator[Progress]:
+    """Name a part of what the present command does, for people who wait for it.
 
     Parameters
     ----------
     total : the number of steps, of which the caller reports each
-    is_computing : whether machine code makes it faster
     """
-    progress, stream = Progress(label, total), sys.stderr
-    if stream is None or not stream.isatty() or is_brief(stream):
-        yield progress
-        return
-    ended, hint = Event(), FASTER if is_computing and not is_available() else ""
-    teller = Thread(target=_report, args=(progress, hint, stream, ended), daemon=True)
-    teller.start()
+    _present.append(progress := Progress(label, total))
     try:
         yield progress
     finally:
-        ended.set()
-        teller.join()
+        _present.pop()
 
 
-def _report(progress: Progress, hint: str, stream: TextIO, ended: Event) -> None:
-    start = monotonic()
-    if ended.wait(PATIENCE):
-        return
-    width = 0
-    while True:
-        line = f"{progress}: {monotonic() - start:.0f} s so far{hint}"
-        width = max(width, len(line))
-        stream.write(f"\r{line:<{width}}")
-        stream.flush()
-        if ended.wait(1):
-            break
-    stream.write(f"\r{'':<{width}}\r")
-    stream.flush()
+def with_progress(name: str, callback: Callable[..., Any] | None) -> Callable[..., Any]:
+    """The function of a command that says on a terminal what it does once that takes longer than two seconds.
+
+    Files and pipes get nothing, as the line is for people who wait.
+    """
+    assert callback is not None
+
+    @wraps(callback)
+    def run(**values: Any) -> None:
+        stream = sys.stderr
+        with working(WORK[name]):
+            if stream is None or not stream.isatty() or is_brief(stream):
+                callback(**values)
+                return
+            with _ProgressLine(stream, FASTER if name in _COMPUTING and not is_available() else "").shown():
+                callback(**values)
+
+    return run
+
+
+class _ProgressLine:
+    """The line, which makes room for whatever the command writes."""
+
+    def __init__(self, stream: TextIO, hint: str) -> None:
+        self._stream = stream
+        self._hint = hint
+        self._start = monotonic()
+        self._room = (Terminal(stream).width or 80) - 1
+        self._ended = Event()
+        self._lock = RLock()
+        #: The columns that the line takes at present.
+        self._width = 0
+        #: Whether the text before it, if any, has ended.
+        self._has_place = True
+
+    @contextmanager
+    def shown(self) -> Iterator[None]:
+        """Show it while something takes long, and remove it then."""
+        streams = sys.stdout, sys.stderr
+        sys.stdout, sys.stderr = (cast("TextIO", _StreamBesideLine(each, self)) for each in streams)
+        teller = Thread(target=self._repeat, daemon=True)
+        teller.start()
+        try:
+            yield
+        finally:
+            self._ended.set()
+            teller.join()
+            sys.stdout, sys.stderr = streams
+
+    def _repeat(self) -> None:
+        pause = PATIENCE
+        while not self._ended.wait(pause):
+            self._show()
+            pause = 1
+        self.remove()
+
+    def _show(self) -> None:
+        with self._lock:
+            if self._has_place:
+                text = f"{_present[-1]}: {monotonic() - self._start:.0f} s so far{self._hint}"[: self._room]
+                self._stream.write(f"\r{text:<{self._width}}")
+                self._stream.flush()
+                self._width = max(self._width, len(text))
+
+    def remove(self) -> None:
+        """Remove it until it is shown again."""
+        with self._lock:
+            if self._width:
+                self._stream.write(f"\r{'':<{self._width}}\r")
+                self._stream.flush()
+                self._width = 0
+
+    def write(self, stream: TextIO, text: str) -> int:
+        """Write a text in its place; it is below the text then, once that is complete."""
+        with self._lock:
+            self.remove()
+            self._has_place = text.endswith("\n")
+            return stream.write(text)
+
+
+class _StreamBesideLine:
+    """A standard stream while the line is shown."""
+
+    def __init__(self, stream: TextIO, line: _ProgressLine) -> None:
+        self._stream = stream
+        self._line = line
+
+    def write(self, text: str) -> int:
+        """Write a text."""
+        return self._line.write(self._stream, text)
+
+    def flush(self) -> None:
+        """Write what is buffered; what comes next may be written past this object, as the bytes of a model are."""
+        self._line.remove()
+        self._stream.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)

@@ -28,7 +28,6 @@ from amalthea_uros.cli.output import (
     write_outputs,
 )
 from amalthea_uros.cli.parameters import OUTPUT_FILE
-from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.report.formats import SUFFIXES, format_of
 from amalthea_uros.report.wording.closing_line import closing_line
@@ -76,8 +75,7 @@ def report(
     if a deadline, requirement or constraint is missed, an activation is lost, or a core is overloaded.
     """
     outputs = _all_outputs(files, outputs)
-    with working("Analyzing and simulating"):
-        content = compile_report(paths, settings, changes=changes, with_simulation=not no_simulation, **options)
+    content = compile_report(paths, settings, changes=changes, with_simulation=not no_simulation, **options)
     show_differences(content.differences)
     write_outputs(outputs, content)
     show_line(closing_line(content.analysis.summary))

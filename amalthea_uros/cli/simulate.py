@@ -190,8 +190,7 @@ def simulate(
     if trace_window is not None and trace_window[0] >= duration:
         start, end = time_text(trace_window[0]), time_text(duration)
         raise click.UsageError(f"the window of the trace starts at {start}, but the run ends at {end}")
-    with working("Reading", is_computing=False):
-        changed = open_changed(paths, settings, changes, with_bus=with_bus)
+    changed = open_changed(paths, settings, changes, with_bus=with_bus)
     pictures.check(changed.system, options)
     try:
         with working(f"Simulating {time_text(duration)}"):

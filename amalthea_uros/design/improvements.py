@@ -192,7 +192,7 @@ class Trial:
                 if _applied(candidate, self.present) is None:
                     return
                 edited = edit_description(self.source.text, self.source.path, candidate.changes)
-                candidate = replace(candidate, changes=self.source.changes_of(edited.stated), is_stated=True)
+                candidate = replace(candidate, changes=self.source.changes_of(edited.assignments), is_stated=True)
             if self.source is None:
                 changed = _applied(candidate, self.present)
             else:
@@ -335,6 +335,9 @@ def _drawbacks(
     for row in worse:
         if row.part in (ResultPart.PROCESS, ResultPart.REQUIREMENT) and row.figure.unit is FigureUnit.VERDICT:
             yield Drawback(name=row.object, before=_verdict(row.before), after=_verdict(row.after), is_verdict=True)
+    for process in after.processes:
+        if process.name not in before.processes.names and process.verdict is not Verdict.MET:
+            yield Drawback(name=process.name, before="no task", after=str(process.verdict), is_verdict=True)
     for core in after.processors:
         if core.is_overloaded and not before.processors[core.name].is_overloaded:
             yield Drawback(name=core.name, before="not overloaded", after="overloaded", is_verdict=True)

@@ -109,10 +109,11 @@ def _periodic(process: str, system: System) -> Periodic | None:
 
 def _periods(processes: Sequence[str], system: System, offered: Sequence[Time]) -> Iterator[ImprovingChange]:
     in_use = {each.period for name in system.processes if (each := _periodic(name, system)) is not None}
+    messages = {each.name for each in system.network.transmissions}
     for name in processes:
         stimulus = _periodic(name, system)
-        if stimulus is None:
-            continue
+        if stimulus is None or name in messages:
+            continue  # messages come as often as somebody else sends them
         parts = {stimulus.period // divisor for divisor in _DIVISORS if stimulus.period % divisor == 0}
         for period in sorted(set(offered) or in_use | parts, reverse=True):
             if period < stimulus.period:

@@ -204,4 +204,4 @@ def _in_description(designs: Designs, candidate: Candidate, source: DescriptionO
     assumed = tuple(change for change in values if change.key in ASSUMED)
     others = tuple(change for change in designs.built(own).value_changes(values) if change not in assumed)
     edited = edit_description(source.edited(stated), source.path, others)
-    return (*stated, *source.changes_of(edited.assignments), *assumed)
+    return (*stated, *source.changes_of((*edited.assignments, *edited.kept)), *assumed)

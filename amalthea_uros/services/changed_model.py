@@ -11,6 +11,7 @@ from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system, update_model
+from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changed import description_origin
 from amalthea_uros.services.files import save_text
@@ -37,7 +38,8 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
     WriteError : the file cannot be written.
     """
     from amalthea_uros.bridge.extract import extract
-    from amalthea_uros.design.model_attributes.origin import edit_attributes
+    from amalthea_uros.design.model_attributes.editable import ModelSource
+    from amalthea_uros.design.model_attributes.origin import ModelOrigin
     from amalthea_uros.xmi.save import save
 
     given = as_model(subject)
@@ -65,10 +67,12 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
         _refuse_migrated(model)
     else:
         model = _copied(model)  # the caller keeps the model without the changes
-    others = edit_attributes(model, extract(model).system, changes)
-    if others or not changes:
-        update_model(model, others, settings)
-    save(model, path)
+    origin = ModelOrigin(Configuration(extract(model).system, settings), ModelSource(model, is_own=True))
+    divided = origin.divided(changes)
+    with origin.editable.edited(divided.attributes):
+        if divided.others or not changes:
+            update_model(model, divided.others, settings)
+        save(model, path)
 
 
 def _write_edited(opened: SystemInput, changes: Sequence[Change], settings: Settings, path: StrPath) -> None:

@@ -135,6 +135,18 @@ def test_a_baseline_accepts_what_is_there_today(bad, tmp_path):
     assert "is not a baseline of amuros" in amuros("check", bad, *INCHRON, "--baseline", baseline).stderr
 
 
+def test_a_baseline_sarif_and_junit_have_as_many_results_as_the_text(bad, tmp_path):
+    files = {name: tmp_path / name for name in ("sarif", "junit", "json")}
+    outputs = [word for name, file in files.items() for word in ("--output", f"{name}={file}")]
+    run = amuros("check", bad, "--write-baseline", tmp_path / "b.json", "--output", "text", *outputs)
+    shown = int(run.stdout.splitlines()[-1].split()[0])
+    accepted = json.loads((tmp_path / "b.json").read_text())["accepted"]
+    results = json.loads(files["sarif"].read_text())["runs"][0]["results"]
+    failures = ElementTree.parse(files["junit"]).findall(".//failure")
+    assert len(accepted) == len(results) == len(failures) == shown
+    assert len(json.loads(files["json"].read_text())["findings"]) > shown
+
+
 def test_of_what_is_found_very_often_the_first_are_shown(tmp_path):
     path = tmp_path / "labels.amxmi"
     # All in one line, as some tools write: the line is not shown as a whole.

@@ -71,7 +71,7 @@ def test_the_rate_of_a_timer_becomes_its_new_period():
     text = ADVANCED.replace("period: 1 ms, execution_time: 4 us", "rate: 1 kHz, execution_time: 4 us")
     result = edited(text, "Control_Function.period=10ms")
     assert "Control_Function, period: 10 ms, execution_time: 4 us" in result.text
-    assert [(edit.target, edit.line, edit.after) for edit in result.edits] == [("Control_Function.period", 17, "10 ms")]
+    assert [(each.target, each.value) for each in result.assignments] == [("Control_Function.period", "10 ms")]
 
 
 def test_priorities_that_would_follow_the_periods_are_kept():
@@ -83,7 +83,7 @@ def test_priorities_that_would_follow_the_periods_are_kept():
     )
     assert old["Task_5ms"] > old["Executor_Task"]
     assert new["Task_5ms"] > new["Executor_Task"] > new["Control_Speed"]
-    assert {edit.target for edit in result.edits if edit.is_consequence} >= {"Task_5ms.priority"}
+    assert {each.target for each in result.kept} >= {"Task_5ms.priority"}
 
 
 # What is refused

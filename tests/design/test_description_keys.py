@@ -232,7 +232,8 @@ def test_a_shorter_sleep_saves_what_the_loop_no_longer_sleeps():
 
 
 #: Changes of the board in `docs/ten-tasks.md` -> the worst case in milliseconds that was reported of another description of it, in
-#: which the sizes of the messages and the execution times of tasks are not known.
+#: which the sizes of the messages and the execution times of tasks are not known. Of 5,725 combinations of usual sizes, reliabilities,
+#: periods and times at random, none is within 0.7 ms of all four values.
 REPORTED = {
     (): 53.9,
     ("uros_task.sleep=1ms",): 44.14,

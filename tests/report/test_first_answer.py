@@ -92,3 +92,12 @@ def test_every_screen_of_the_page_fits_80_columns():
     screens = re.findall(r"^```console\n\$ [^\n]*\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
     assert len(screens) >= 9
     assert max(len(line) for screen in screens for line in screen.splitlines()) <= 80
+
+
+def test_the_page_counts_the_commands_that_it_shows():
+    table = re.findall(r"^\| \[\d+\. [^|]*\| (\d+)[^|]*\| (\d+) \|", PAGE, re.MULTILINE)
+    tasks = re.split(r"^## \d+\. ", PAGE, flags=re.MULTILINE)[1:]
+    shown = [re.findall(r"^\$ (.*)", task, re.MULTILINE) for task in tasks]
+    assert [int(commands) for commands, _ in table] == [sum(line.count("amuros ") for line in lines) for lines in shown]
+    # Nothing but the commands: no file is edited between two of them.
+    assert {edits for _, edits in table} == {"0"}

@@ -113,6 +113,17 @@ def test_what_can_be_left_out_is_before_numbers_are_cut(columns):
     assert stream.getvalue().splitlines() == ["  task             worst", "  A_long_name  12,345 ms", "  (no room for: best)"]
 
 
+def test_a_column_that_is_left_out_is_named_as_it_is(columns):
+    columns(34)
+    stream = Screen()
+    Terminal(stream).table(
+        ("period", "the_first_of_two_long_names", "the_second_of_two_long_names"), [("1 ms", "2 ms", "3 ms")], (0, 1, 2), (2,)
+    )
+    lines = stream.getvalue().splitlines()
+    assert max(map(len, lines)) <= 34
+    assert " ".join(map(str.strip, lines[-2:])) == "(no room for: the_second_of_two_long_names)"
+
+
 def test_lines_keep_numbers_with_their_units(columns):
     columns(20)
     stream = Screen()

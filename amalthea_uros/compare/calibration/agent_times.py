@@ -13,8 +13,7 @@ from math import ceil, floor
 from amalthea_uros.compare.calibration.options import AgentFit, CalibrationOptions
 from amalthea_uros.compare.calibration.samples import Measured, Samples, samples_of
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome, calibrated
-from amalthea_uros.design.description.assign import Assignment
-from amalthea_uros.design.description.edit import apply_assignments
+from amalthea_uros.design.description.assign import Assignment, apply_assignments
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.measure.series import WHOLE_TIME

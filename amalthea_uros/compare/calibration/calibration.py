@@ -21,8 +21,8 @@ from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.compare.calibration.wire_parts import executed_times
 from amalthea_uros.design.description import text_edits
+from amalthea_uros.design.description.assign import apply_assignments
 from amalthea_uros.design.description.built_objects import BuiltObjects
-from amalthea_uros.design.description.edit import apply_assignments
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError, WriteError
 from amalthea_uros.measure.series import Measurement

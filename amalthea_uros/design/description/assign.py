@@ -11,7 +11,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key_names import only_one
 from amalthea_uros.design.description.keys import DescriptionKey, Holder, matching, short_name
-from amalthea_uros.design.description.text_edits import Path, Value, has_mapping, value_text
+from amalthea_uros.design.description.text_edits import Path, Value, has_mapping, value_text, with_value
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.nodes import plain, read_nodes
@@ -169,9 +169,8 @@ def is_stated_by_parts(key: DescriptionKey) -> bool:
     return isinstance(section, ExecutionTimeSection) and section.on is not None
 
 
-def assignments(text: str, pairs: Iterable[tuple[DescriptionKey, Change]]) -> tuple[Assignment, ...]:
-    """The edits for changes of keys; raises as `Assignments.add`."""
-    collected = Assignments(text, {})
-    for key, change in pairs:
-        collected.add(key, change)
-    return collected.every
+def apply_assignments(text: str, edits: Iterable[Assignment]) -> str:
+    """The text with other values."""
+    for each in edits:
+        text = with_value(text, each.path, each.value, each.instead_of)
+    return text

@@ -10,11 +10,10 @@ from amalthea_uros._internal.paths import TEXT
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system
-from amalthea_uros.design.description import text_edits
-from amalthea_uros.design.description.assign import Assignment
+from amalthea_uros.design.description.assign import Assignment, apply_assignments
 from amalthea_uros.design.description.built_objects import BuiltObjects
-from amalthea_uros.design.description.texts import described
-from amalthea_uros.errors import InvalidArgumentError, ReadError
+from amalthea_uros.design.description.texts import described, edited_assembly
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter, Periodic
 from amalthea_uros.perf.system import System
@@ -88,48 +87,19 @@ def arrival_periods(system: System) -> Mapping[str, Time]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ValueEdit:
-    """A value that was written.
-
-    Attributes
-    ----------
-    target : the object and the key, such as "Executor_Task.period"
-    line : of the edited text, counted from 1
-    before : None if the key was not there
-    is_consequence : whether it keeps a value as it was that would otherwise have followed the others
-    """
-
-    target: str
-    line: int
-    before: str | None
-    after: str
-    is_consequence: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class EditedDescription:
     """A description with other values.
 
     Attributes
     ----------
-    path : the file that the text is from
-    before, text : without and with the edits
-    edits : in the order of the changes
-    assignments : what was written for them
-    kept : those of them that keep values as they were, which would otherwise have followed the others
+    text : with them
+    assignments : what was written for the changes
+    kept : what was written to keep values as they were, which would otherwise have followed the others
     """
 
-    path: Path
-    before: str
     text: str
-    edits: tuple[ValueEdit, ...]
-    assignments: tuple[Assignment, ...] = ()
-    kept: tuple[Assignment, ...] = ()
-
-    @property
-    def stated(self) -> tuple[Assignment, ...]:
-        """What the changes alone say."""
-        return self.assignments[: len(self.assignments) - len(self.kept)]
+    assignments: tuple[Assignment, ...]
+    kept: tuple[Assignment, ...]
 
 
 def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = ()) -> EditedDescription:
@@ -155,7 +125,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
     consequences: list[Assignment] = []
     while True:
         edited = apply_assignments(text, [*assignments, *consequences])
-        found = _system(edited, path, changes)
+        found = edited_assembly(edited, path, changes).system
         pinned = {assignment.target for assignment in (*assignments, *consequences)}
         different = differences(meaning(expected), meaning(found))
         if not different:
@@ -164,41 +134,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
         if not more:
             raise InvalidArgumentError(_other_effect(changes, different, before.assembly.system, expected))
         consequences += [assignment for change in more for assignment in built.assignments(change)]
-    edits = [*value_edits(text, edited, assignments), *value_edits(text, edited, consequences, is_consequence=True)]
-    every = (*assignments, *consequences)
-    return EditedDescription(
-        path=path, before=text, text=edited, edits=tuple(edits), assignments=every, kept=tuple(consequences)
-    )
-
-
-def apply_assignments(text: str, assignments: Iterable[Assignment]) -> str:
-    """The text with other values."""
-    for each in assignments:
-        text = text_edits.with_value(text, each.path, each.value, each.instead_of)
-    return text
-
-
-def value_edits(
-    before: str, after: str, assignments: Iterable[Assignment], *, is_consequence: bool = False
-) -> Iterable[ValueEdit]:
-    """The values that were written, with their lines."""
-    for each in assignments:
-        yield ValueEdit(
-            target=each.target,
-            line=text_edits.line_of(after, each.path),
-            before=text_edits.value_text(before, each.path),
-            after=text_edits.value_text(after, each.path) or "",
-            is_consequence=is_consequence,
-        )
-
-
-def _system(text: str, path: Path, changes: Sequence[Change]) -> System:
-    try:
-        return described(text, path).assembly.system
-    except ReadError as error:
-        reasons = "; ".join(finding.message for finding in error.findings)
-        what = ", ".join(map(str, changes))
-        raise InvalidArgumentError(f"a description with {what} is not valid: {reasons}") from None
+    return EditedDescription(text=edited, assignments=tuple(assignments), kept=tuple(consequences))
 
 
 def _pins(different: Iterable[tuple[str, str]], expected: System, found: System) -> Iterable[Change]:

@@ -11,16 +11,16 @@ from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
 from amalthea_uros.design.changes.timing_changes import Happening, timing_changes
-from amalthea_uros.design.description.assign import Assignment, Assignments, is_stated_by_parts, the_key
+from amalthea_uros.design.description.assign import Assignment, Assignments, apply_assignments, is_stated_by_parts, the_key
 from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of, matching, short_name
 from amalthea_uros.design.description.refusals import refusal
-from amalthea_uros.design.description.text_edits import rendered, value_text, with_value
-from amalthea_uros.design.description.texts import described
-from amalthea_uros.diagnostics import Severity
-from amalthea_uros.errors import InvalidArgumentError, ReadError
+from amalthea_uros.design.description.text_edits import rendered, value_text
+from amalthea_uros.design.description.texts import described, edited_assembly
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.uros.assemble import Assembly
 
 #: Keys that are changed in the system that is built, because it is an assumption about it which no description states.
 ASSUMED = ("communication", "arrival_jitter")
@@ -63,7 +63,7 @@ class DescriptionOrigin:
     @property
     def present(self) -> Configuration:
         """The system and the settings without changes."""
-        return apply(self._system(self.text), self.settings, self.assumed)
+        return apply(self._system(described(self.text, self.path).assembly), self.settings, self.assumed)
 
     @property
     def keys(self) -> tuple[DescriptionKey, ...]:
@@ -103,7 +103,7 @@ class DescriptionOrigin:
         """The values before and after changes, and what of tasks follows from them."""
         if not changes:
             return ()
-        divided, old = self.divided(changes), self._system(self.text)
+        divided, old = self.divided(changes), self._system(described(self.text, self.path).assembly)
         new = self._changed_system(divided, changes)
         text = self._text(divided)
         values = {each.target: self._difference(each, key, text, divided) for each, key in divided.stated}
@@ -156,22 +156,12 @@ class DescriptionOrigin:
             raise refusal(change, self.keys, self.present.system, error) from None
 
     def _text(self, divided: DividedChanges) -> str:
-        text = self.text
-        for each in divided.assignments:
-            text = with_value(text, each.path, each.value, each.instead_of)
-        return text
+        return apply_assignments(self.text, divided.assignments)
 
     def _changed_system(self, divided: DividedChanges, changes: Sequence[Change]) -> System:
-        try:
-            return self._system(self._text(divided))
-        except ReadError as error:
-            errors = (finding.message for finding in error.findings if finding.severity is Severity.ERROR)
-            reasons = "; ".join(errors)
-            what = ", ".join(map(str, changes))
-            raise InvalidArgumentError(f"a description with {what} is not valid: {reasons}") from None
+        return self._system(edited_assembly(self._text(divided), self.path, changes))
 
-    def _system(self, text: str) -> System:
-        assembly = described(text, self.path).assembly
+    def _system(self, assembly: Assembly) -> System:
         with_bus = assembly.system_with_bus() if self.with_bus else None
         return with_bus or assembly.system
 

@@ -12,10 +12,9 @@ from amalthea_uros.design.changes.timing_changes import consequences, described
 from amalthea_uros.design.model_attributes.editable import EditableModel, ModelSource
 from amalthea_uros.design.model_attributes.keys import ModelKey
 from amalthea_uros.design.model_attributes.refusals import refusal
-from amalthea_uros.design.model_attributes.values import checked, shown
+from amalthea_uros.design.model_attributes.values import shown
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.metamodel.model import Model
 from amalthea_uros.perf.system import System
 
 
@@ -77,8 +76,11 @@ class ModelOrigin:
             reason = _refused(self.present.system, change)
             if reason is None:
                 others.append(change)
-            else:
-                attributes.append((attribute_of(change, self.editable, self.present.system, reason), change))
+                continue
+            key = self.editable.key(change.target)
+            if key is None:
+                raise refusal(change, self.editable.keys, self.present.system, reason)
+            attributes.append((key, change))
         return DividedModelChanges(tuple(attributes), tuple(others))
 
     def _edited_system(self, divided: DividedModelChanges) -> System:
@@ -113,35 +115,3 @@ def _refused(system: System, change: Change) -> InvalidArgumentError | None:
     except InvalidArgumentError as error:
         return error
     return None
-
-
-def attribute_of(change: Change, model: EditableModel, system: System, reason: InvalidArgumentError) -> ModelKey:
-    """The key of a change.
-
-    Raises
-    ------
-    InvalidArgumentError : no value of the model has the name, or several ones.
-    """
-    key = model.key(change.target)
-    if key is None:
-        raise refusal(change, model.keys, system, reason)
-    return key
-
-
-def edit_attributes(model: Model, system: System, changes: Sequence[Change]) -> tuple[Change, ...]:
-    """Change the attributes of a model; returns the changes of keys of its system, which are not made.
-
-    Raises
-    ------
-    InvalidArgumentError : nothing, or more than one value, has a name, or a value is wrong.
-    """
-    edited, others = EditableModel(model), []
-    for change in changes:
-        reason = _refused(system, change)
-        if reason is None:
-            others.append(change)
-            continue
-        key = attribute_of(change, edited, system, reason)
-        for each in checked(key, change.target, change.value, model):
-            setattr(each.element, each.feature, each.value)
-    return tuple(others)

@@ -245,7 +245,8 @@ def sweep_document(result: SweepResult) -> Document:
     columns = _columns(result)
     shown = result.outcomes[:_MOST_VARIANTS]
     targets = [f"{sweep.object}.{sweep.key}" for sweep in result.plan.sweeps]
-    titles = (*(f">{title}" for title in (*targets, *map(_heading, columns))), SCHEDULABLE)
+    quantities = (f"{'~' * number}>{_heading(column)}" for number, column in enumerate(columns))
+    titles = (*(f">{target}" for target in targets), *quantities, SCHEDULABLE)
     return document(
         [
             section(

@@ -11,7 +11,7 @@ from textwrap import wrap
 GAP = 2
 
 #: What the columns of remarks are called.
-_REMARKS = ("", "reason", "why", "how it is computed")
+_REMARKS = ("", "reason", "why", "how it is computed", "what gets worse")
 
 #: Shorter remarks, such as claims, always stay in the table.
 _SHORT = 24

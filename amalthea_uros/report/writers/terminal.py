@@ -161,10 +161,10 @@ class Terminal:
         before, missing = len(self.notes), list[str]()
         cells = with_footnotes(headings, cells, self.width or WIDTH_ELSEWHERE, self.notes)
         if self.width is not None:
-            headings = folded_headings(headings, cells, self.width)
+            titles, headings = headings, folded_headings(headings, cells, self.width)
             without = left_out(headings, cells, spare, right, self.width)
             kept = [index for index in range(len(headings)) if index not in without]
-            missing = [headings[index].replace("\n", " ") for index in sorted(without) if headings[index]]
+            missing = [titles[index] for index in sorted(without) if titles[index]]
             headings = [headings[index] for index in kept]
             right = [number for number, index in enumerate(kept) if index in right]
             cells = folded(headings, [[row[index] for index in kept] for row in cells], right, self.width)
