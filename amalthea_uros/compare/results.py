@@ -54,7 +54,7 @@ def is_bound(claim: PredictionClaim | None, statistic: Statistic | None) -> bool
     return claim in (PredictionClaim.EXACT, PredictionClaim.BOUND) and statistic in (Statistic.MIN, Statistic.MAX)
 
 
-class Source(StrEnum):
+class PredictionSource(StrEnum):
     """What predicts."""
 
     ANALYSIS = "analysis"

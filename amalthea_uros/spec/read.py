@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
+from amalthea_uros._internal.files import FileError, FileFlaw, read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -177,10 +177,9 @@ def _refuse_xml(path: Path, text: str) -> None:
 def _text(path: Path) -> str:
     try:
         return read_text(path, DESCRIPTION_SIZE)
-    except FileTooLargeError as error:
-        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     except FileError as error:
-        raise ReadError([Finding("YML001", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
+        rule = "YML002" if error.flaw is FileFlaw.SIZE else "YML001"
+        raise ReadError([Finding(rule, Severity.ERROR, error.reason, Location(path), error.advice)]) from None
 
 
 def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
