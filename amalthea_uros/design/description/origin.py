@@ -16,11 +16,11 @@ from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of, matching, short_name
 from amalthea_uros.design.description.refusals import refusal
 from amalthea_uros.design.description.text_edits import rendered, value_text, with_value
-from amalthea_uros.design.description.texts import described
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.errors import InvalidArgumentError, ReadError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
+from amalthea_uros.uros.described import describe_text
 
 #: Keys that are changed in the system that is built, because it is an assumption about it which no description states.
 ASSUMED = ("communication", "arrival_jitter")
@@ -151,7 +151,7 @@ class DescriptionOrigin:
     def _of_built_object(self, change: Change) -> Sequence[Assignment]:
         """The edits for a value of an object that is built, such as the runnable of a task."""
         try:
-            return BuiltObjects(described(self.text, self.path), self.text).assignments(change)
+            return BuiltObjects(describe_text(self.text, self.path), self.text).assignments(change)
         except InvalidArgumentError as error:
             raise refusal(change, self.keys, self.present.system, error) from None
 
@@ -171,7 +171,7 @@ class DescriptionOrigin:
             raise InvalidArgumentError(f"a description with {what} is not valid: {reasons}") from None
 
     def _system(self, text: str) -> System:
-        assembly = described(text, self.path).assembly
+        assembly = describe_text(text, self.path).assembly
         with_bus = assembly.system_with_bus() if self.with_bus else None
         return with_bus or assembly.system
 
@@ -197,4 +197,4 @@ def _consequences(old: System, new: System, shown: dict[str, Difference]) -> lis
 
 @lru_cache(maxsize=4)
 def _keys(text: str, path: Path) -> tuple[DescriptionKey, ...]:
-    return keys_of(described(text, path).whole, text)
+    return keys_of(describe_text(text, path).whole, text)
