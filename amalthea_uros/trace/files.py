@@ -7,7 +7,6 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from hashlib import file_digest, sha256
 from io import TextIOWrapper
 from pathlib import Path
 from typing import IO, TextIO, cast
@@ -225,6 +224,8 @@ def _listed(folder: Path) -> list[Path]:
 
 def digest_of(path: Path) -> str:
     """The SHA-256 of a file, or of all files of a folder, as hexadecimal digits; "" of a stream."""
+    from hashlib import file_digest, sha256
+
     if is_directory(path):
         digests = (f"{digest_of(file)}  {file.relative_to(path).as_posix()}\n" for file in trace_files(path))
         return sha256("".join(digests).encode()).hexdigest()
