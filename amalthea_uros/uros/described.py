@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from amalthea_uros._internal.paths import folder_of
+from amalthea_uros._internal.paths import TEXT, folder_of
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
@@ -58,12 +58,12 @@ def describe_file(file: Path, platform: str | None = None) -> Described:
 
 
 @lru_cache(maxsize=32)
-def describe_text(text: str, path: Path) -> Described:
+def describe_text(text: str, path: Path = TEXT) -> Described:
     """What the text of a description describes; searches and edits ask for the same texts again.
 
     Parameters
     ----------
-    path : the file of the text, for findings, and for the files that it names
+    path : the file of the text, for findings, and for the files that it names; without it, these are relative to the current folder
 
     Raises
     ------

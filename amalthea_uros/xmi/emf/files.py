@@ -83,7 +83,7 @@ def write_texts(contents: Mapping[Path, FileText], removed: Collection[Path] = (
 
 def not_readable(error: FileError) -> ReadError:
     """A failure to read a file as the exception of this library."""
-    rule = {FileFlaw.ACCESS: "XMI001", FileFlaw.ENCODING: "XMI002", FileFlaw.SIZE: "XMI004"}[error.flaw]
+    rule = {FileFlaw.ENCODING: "XMI002", FileFlaw.SIZE: "XMI004"}.get(error.flaw, "XMI001")
     return ReadError([Finding(rule, Severity.ERROR, error.reason, Location(error.path), error.advice)])
 
 
