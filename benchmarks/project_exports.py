@@ -23,7 +23,7 @@ from amalthea_uros.inchron_bridge.basics.comments import noted
 from amalthea_uros.inchron_bridge.build import build_project
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.model import Model
-from amalthea_uros.services.executor_iterations import iterations_of
+from amalthea_uros.services.build_targets import iterations_of
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.context import Context

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
+from enum import Enum, auto
 from functools import cache
 from pathlib import Path
 from typing import IO, BinaryIO
@@ -42,6 +43,14 @@ _OVERLAY: ContextVar[Mapping[Path, bytes]] = ContextVar("overlay", default={})  
 _IMPOSSIBLE = (OSError, ValueError, RuntimeError)
 
 
+class FileFlaw(Enum):
+    """What is wrong with a file."""
+
+    ACCESS = auto()
+    SIZE = auto()
+    ENCODING = auto()
+
+
 class FileError(Exception):
     """A file cannot be read or written.
 
@@ -50,24 +59,17 @@ class FileError(Exception):
     path : the file
     reason : what is wrong, without a full stop: "file not found"
     advice : what to do about it, "" if the reason says it all
+    flaw : whether it, or what is packed in it, is larger than a limit, or its bytes are not text in the expected encoding
     """
 
-    def __init__(self, path: Path, reason: str, advice: str = "") -> None:
+    def __init__(self, path: Path, reason: str, advice: str = "", flaw: FileFlaw = FileFlaw.ACCESS) -> None:
         super().__init__(f"{path}: {reason}")
-        self.path, self.reason, self.advice = path, reason, advice
+        self.path, self.reason, self.advice, self.flaw = path, reason, advice, flaw
 
 
-class FileTooLargeError(FileError):
-    """A file, or what is packed in it, is larger than a limit."""
-
-
-def larger(path: Path, limit: int, what: str = "the file") -> FileTooLargeError:
+def larger(path: Path, limit: int, what: str = "the file") -> FileError:
     """The error for more than a number of bytes."""
-    return FileTooLargeError(path, f"{what} is larger than {_size_text(limit)}", ADVICE)
-
-
-class FileEncodingError(FileError):
-    """The bytes of a file are not text in the expected encoding."""
+    return FileError(path, f"{what} is larger than {_size_text(limit)}", ADVICE, FileFlaw.SIZE)
 
 
 def read_bytes(path: Path, max_size: int) -> bytes:
@@ -75,8 +77,7 @@ def read_bytes(path: Path, max_size: int) -> bytes:
 
     Raises
     ------
-    FileTooLargeError : more than `max_size` bytes.
-    FileError : not found, not permitted, or a directory.
+    FileError : more than `max_size` bytes, not found, not permitted, or a directory.
     """
     overlay = _OVERLAY.get()
     if path in overlay:
@@ -135,13 +136,13 @@ def read_text(path: Path, max_size: int) -> str:
 
     Raises
     ------
-    FileEncodingError : not UTF-8.
-    FileError : as for `read_bytes`.
+    FileError : not UTF-8, or as for `read_bytes`.
     """
     try:
         return read_bytes(path, max_size).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise FileEncodingError(path, f"the file is not UTF-8 (byte {error.start})", "Save it as UTF-8.") from None
+        reason = f"the file is not UTF-8 (byte {error.start})"
+        raise FileError(path, reason, "Save it as UTF-8.", FileFlaw.ENCODING) from None
 
 
 def write_bytes(path: Path, data: bytes) -> None:

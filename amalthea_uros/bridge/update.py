@@ -15,6 +15,7 @@ from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.bridge.basics.context import Extracting
 from amalthea_uros.bridge.basics.kinds import kind_of
 from amalthea_uros.bridge.build import build_model
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import ElementFeature, features_of
@@ -40,10 +41,6 @@ _IDENTIFYING: dict[type[Element], str] = {
 _POSITION = object()
 
 
-class UnwritableError(ValueError):
-    """A difference for which the model has no place; the text says which one."""
-
-
 def update(model: Model, old: System, new: System) -> None:
     """Write what differs between the system of a model and a changed one into the model.
 
@@ -53,7 +50,7 @@ def update(model: Model, old: System, new: System) -> None:
 
     Raises
     ------
-    UnwritableError : the model has no place for a difference. The model is then useless.
+    InvalidArgumentError : the model has no place for a difference. The model is then useless.
     WriteError : a system cannot be built as objects of the version of the model.
     """
     version = max(model.documents[0].facts_version, _OLDEST, key=version_key)
@@ -98,7 +95,7 @@ class _Update:
     def apply(self, old: dict[Hashable, Element], new: dict[Hashable, Element]) -> None:
         """Add what is new, and then set what differs."""
         if lost := [key for key in old if key not in new]:
-            raise UnwritableError(f"{lost[0]} would have to be removed")
+            raise InvalidArgumentError(f"{lost[0]} would have to be removed")
         for key, element in new.items():
             if key not in old and key not in self._targets:
                 self._add(element)
@@ -118,7 +115,7 @@ class _Update:
     def _add(self, element: Element) -> None:
         holder = element.container
         if holder is None:
-            raise UnwritableError(f"the model has no {type(element).__name__}")
+            raise InvalidArgumentError(f"the model has no {type(element).__name__}")
         target = self._model.documents[-1].root if isinstance(holder, am.Amalthea) else self._target(holder)
         feature = next(f for f in features_of(type(holder)).values() if element in _parts(holder, f))
         if isinstance(holder, am.Amalthea):
@@ -151,7 +148,7 @@ class _Update:
     def _change(self, old: Element, new: Element, target: Element) -> None:
         """Set the features of an object of the model that differ between two built ones."""
         if type(target) is not type(new):
-            raise UnwritableError(f"{_described(target)} would have to become a {type(new).__name__}")
+            raise InvalidArgumentError(f"{_described(target)} would have to become a {type(new).__name__}")
         for feature in features_of(type(new)).values():
             before, after = _values(old, feature), _values(new, feature)
             if _meanings(feature, before) == _meanings(feature, after):
@@ -186,7 +183,7 @@ class _Update:
         if (is_positional and len(held) != len(before)) or any(
             key not in present for key in (*kept, *(old.keys() - new.keys()))
         ):
-            raise UnwritableError(f"{_described(target)} states its {feature.xml_name} in another form")
+            raise InvalidArgumentError(f"{_described(target)} states its {feature.xml_name} in another form")
         for key in old:
             if key not in new:
                 self._replace(feature, target, present[key], None)

@@ -31,7 +31,7 @@ from amalthea_uros.compare.calibration.options import FIT_FORM, AgentFit, Calibr
 from amalthea_uros.compare.comparing import CompareOptions
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
 from amalthea_uros.compare.naming import FORM, Meaning, Names, parse_meaning
-from amalthea_uros.compare.results import Source
+from amalthea_uros.compare.results import PredictionSource
 from amalthea_uros.compare.shares import parse_share, parse_tolerance
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.services.compare import compare_files
@@ -62,7 +62,7 @@ def _overhead(text: str) -> tuple[str, Time]:
 )
 @click.option(
     "--by",
-    type=click.Choice([*map(str, Source), _BOTH]),
+    type=click.Choice([*map(str, PredictionSource), _BOTH]),
     default=_BOTH,
     show_default=True,
     help="What predicts: the bounds and means of the analysis, a simulation as long as the measurement, or both.",
@@ -131,7 +131,7 @@ def compare(
     outputs = checked_outputs(outputs, [("--picture", picture)])
     options = CompareOptions(
         tolerance=tolerance,
-        sources=tuple(Source) if by == _BOTH else (Source(by),),
+        sources=tuple(PredictionSource) if by == _BOTH else (PredictionSource(by),),
         duration=duration,
         seed=seed,
         names=Names(renamed=dict(renamed), meanings=meanings),

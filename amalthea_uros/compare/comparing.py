@@ -16,10 +16,10 @@ from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.naming import Names, Target, targets
 from amalthea_uros.compare.not_measured import losses, not_measured
 from amalthea_uros.compare.phases import analyses_in_phases
-from amalthea_uros.compare.predictions import Missing, Predictor
-from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, Source
+from amalthea_uros.compare.predictions import Predictor
+from amalthea_uros.compare.results import Agreement, Comparison, ComparisonRow, PredictionSource
 from amalthea_uros.compare.simulated import Run, simulate_measured
-from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.errors import InvalidArgumentError, UnknownError
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.names import require
 from amalthea_uros.perf.system import System
@@ -29,7 +29,7 @@ from amalthea_uros.timing.stated_distributions import Basis
 from amalthea_uros.units import SECOND, Time
 
 DEFAULT_TOLERANCE = Fraction(20, 100)
-EVERY_SOURCE = tuple(Source)
+EVERY_SOURCE = tuple(PredictionSource)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +47,7 @@ class CompareOptions:
     """
 
     tolerance: Fraction = DEFAULT_TOLERANCE
-    sources: tuple[Source, ...] = EVERY_SOURCE
+    sources: tuple[PredictionSource, ...] = EVERY_SOURCE
     duration: Time | None = None
     seed: int = 1
     names: Names = field(default_factory=Names)
@@ -69,12 +69,12 @@ def compare_measured(system: System, settings: Settings, measurement: Measuremen
     InvalidArgumentError : the options name what does not exist, or two series are the same quantity.
     """
     require("process", filter(None, options.overheads), system.processes)
-    analysis = analyze_system(system, settings) if Source.ANALYSIS in options.sources else None
+    analysis = analyze_system(system, settings) if PredictionSource.ANALYSIS in options.sources else None
     with_overhead = processes_with_overhead(system) | options.overheads.keys()
     begins = begins_of(system)
     found = targets(measurement, options.names, system, with_overhead, begins)
     runs: tuple[Run, ...] = ()
-    if Source.SIMULATION in options.sources:
+    if PredictionSource.SIMULATION in options.sources:
         runs = simulate_measured(system, settings, options.duration or measurement.duration or SECOND, options.seed)
     simulation = runs[0].simulation if runs else None
     in_phases = () if analysis is None or runs else analyses_in_phases(analysis, system, settings)
@@ -129,7 +129,7 @@ def _rows(target: Target, predictor: Predictor, rule: Rule, basis_of: Callable[[
         return
     try:
         predictions = predictor.of(target.kind, target.name, target.quantity)
-    except Missing as missing:
+    except UnknownError as missing:
         yield replace(nothing, reason=str(missing))
         return
     chosen = {statistic: predictions[statistic] for statistic in target.statistics}

@@ -88,11 +88,11 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     assert series.statistics is not None
     values, samples = _values(series), series.statistics.count
     if not limit.is_jitter:
-        return MeasuredLimit.of(limit, observe(limit, values), samples)
+        return MeasuredLimit.of(limit, observe(limit, values), samples=samples)
     period = nominal_period(limit, system) if is_from_period(limit) else None
     if is_from_period(limit) and period is None:
-        return MeasuredLimit.of(limit, not_observed(f"{limit.object!r} has no nominal period"), samples)
-    return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples)
+        return MeasuredLimit.of(limit, not_observed(f"{limit.object!r} has no nominal period"), samples=samples)
+    return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples=samples)
 
 
 def _not_measured(limit: SystemLimit) -> str:

@@ -19,6 +19,7 @@ from amalthea_uros.compare.agreement import Prediction, measured_values
 from amalthea_uros.compare.host import HostPredictor
 from amalthea_uros.compare.results import PredictionClaim, Statistic
 from amalthea_uros.compare.simulated import Run
+from amalthea_uros.errors import UnknownError
 from amalthea_uros.measure.series import MeasuredKind, TimeStatistics
 from amalthea_uros.perf.host import Host
 from amalthea_uros.simulate.observations import MetricObservation
@@ -31,7 +32,7 @@ from amalthea_uros.units import Time, time_text
 Predictions = Mapping[Statistic, tuple[Prediction, ...]]
 
 
-class _Ends(NamedTuple):
+class _EndQuantities(NamedTuple):
     """The quantities of an analysis that are the minimum, the mean and the maximum of a measured one."""
 
     minimum: LatencyQuantity | None = None
@@ -39,18 +40,20 @@ class _Ends(NamedTuple):
     maximum: LatencyQuantity | None = None
 
 
-_FIRST_TO_FIRST = _Ends(
+_FIRST_TO_FIRST = _EndQuantities(
     LatencyQuantity.MIN_FIRST_TO_FIRST, LatencyQuantity.MEAN_FIRST_TO_FIRST, LatencyQuantity.MAX_REDUCED_REACTION_TIME
 )
-_LAST_TO_LAST = _Ends(LatencyQuantity.MIN_LAST_TO_LAST, LatencyQuantity.MEAN_LAST_TO_LAST, LatencyQuantity.MAX_REDUCED_DATA_AGE)
-_OF_CHAINS: Mapping[str, _Ends] = {
-    ChainQuantity.REACTION_TIME: _Ends(maximum=LatencyQuantity.MAX_REACTION_TIME),
+_LAST_TO_LAST = _EndQuantities(
+    LatencyQuantity.MIN_LAST_TO_LAST, LatencyQuantity.MEAN_LAST_TO_LAST, LatencyQuantity.MAX_REDUCED_DATA_AGE
+)
+_OF_CHAINS: Mapping[str, _EndQuantities] = {
+    ChainQuantity.REACTION_TIME: _EndQuantities(maximum=LatencyQuantity.MAX_REACTION_TIME),
     ChainQuantity.REDUCED_REACTION_TIME: _FIRST_TO_FIRST,
-    ChainQuantity.DATA_AGE: _Ends(maximum=LatencyQuantity.MAX_DATA_AGE),
+    ChainQuantity.DATA_AGE: _EndQuantities(maximum=LatencyQuantity.MAX_DATA_AGE),
     ChainQuantity.REDUCED_DATA_AGE: _LAST_TO_LAST,
     ChainQuantity.FIRST_TO_FIRST: _FIRST_TO_FIRST,
-    ChainQuantity.FIRST_TO_LAST: _Ends(maximum=LatencyQuantity.MAX_FIRST_TO_LAST),
-    ChainQuantity.LAST_TO_FIRST: _Ends(LatencyQuantity.MIN_LAST_TO_FIRST, None, LatencyQuantity.MAX_LAST_TO_FIRST),
+    ChainQuantity.FIRST_TO_LAST: _EndQuantities(maximum=LatencyQuantity.MAX_FIRST_TO_LAST),
+    ChainQuantity.LAST_TO_FIRST: _EndQuantities(LatencyQuantity.MIN_LAST_TO_FIRST, None, LatencyQuantity.MAX_LAST_TO_FIRST),
     ChainQuantity.LAST_TO_LAST: _LAST_TO_LAST,
 }
 #: The metrics to which an overhead is added: it is part of an execution, and not of the distance of two of them.
@@ -58,10 +61,6 @@ _WITH_OVERHEAD = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, 
 #: Parts of the response time of a callback: its bound is one of these, too.
 _WITHIN_RESPONSE = (JobMetric.NET_EXECUTION_TIME, JobMetric.GROSS_EXECUTION_TIME, JobMetric.RUNNING_TIME)
 _ENDS = {Statistic.MIN: "minimum", Statistic.MEAN: "mean", Statistic.MAX: "maximum"}
-
-
-class Missing(Exception):  # noqa: N818 - it is no error: the text says why nothing is predicted
-    """There is no prediction."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,11 +87,11 @@ class Predictor:
 
         Raises
         ------
-        Missing : there is none.
+        UnknownError : there is none.
         """
         found = [*self._analyzed(kind, name, quantity), *self._simulated(kind, name, quantity)]
         if not found:
-            raise Missing(self._reason(kind, name, quantity))
+            raise UnknownError(self._reason(kind, name, quantity))
         return {
             statistic: tuple(self._with_overhead(name, quantity, statistic, one) for each, one in found if each is statistic)
             for statistic in Statistic
@@ -201,7 +200,7 @@ def _of_metric(metric: Metric, quantity: str) -> Iterator[tuple[Statistic, Predi
 
 def _of_chain(chain: ChainResult, quantity: str) -> Iterator[tuple[Statistic, Prediction]]:
     for statistic, end in _ENDS.items():
-        name = getattr(_OF_CHAINS.get(quantity, _Ends()), end)
+        name = getattr(_OF_CHAINS.get(quantity, _EndQuantities()), end)
         value = None if name is None else chain.value(name)
         if value is not None and value.value is not None:
             claim = PredictionClaim.EXACT if value.claim is Claim.EXACT else PredictionClaim.BOUND

@@ -9,9 +9,7 @@ from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.judge.limits import SystemLimit
-from amalthea_uros.judge.margins import margin_of
-from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
+from amalthea_uros.judge.verdict import ObservedLimit, ObservedVerdict
 from amalthea_uros.measure.series import Distance, MeasuredKind, Measurement, Series
 from amalthea_uros.units import Time
 
@@ -54,7 +52,7 @@ def is_bound(claim: PredictionClaim | None, statistic: Statistic | None) -> bool
     return claim in (PredictionClaim.EXACT, PredictionClaim.BOUND) and statistic in (Statistic.MIN, Statistic.MAX)
 
 
-class Source(StrEnum):
+class PredictionSource(StrEnum):
     """What predicts."""
 
     ANALYSIS = "analysis"
@@ -161,49 +159,15 @@ class LossRow(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MeasuredLimit(Shown):
+class MeasuredLimit(ObservedLimit, Shown):
     """A deadline, requirement or constraint, judged by what was measured.
 
     Attributes
     ----------
-    name : of the requirement, or of the process with the deadline
-    limit, value : of a time, in picoseconds, or of a number; None if it is unknown
-    is_time : whether they are times
     samples : number of measured values
-    reason : why it is missed although the value does not show it, or not observed
     """
 
-    name: str
-    object: str
-    quantity: str
-    is_upper: bool
-    limit: Fraction | None
-    value: Fraction | None
-    verdict: ObservedVerdict
     samples: int
-    is_time: bool = True
-    reason: str = ""
-
-    @classmethod
-    def of(cls, limit: SystemLimit, found: ObservedJudgement, samples: int) -> MeasuredLimit:
-        """The result for a limit that was judged."""
-        return cls(
-            name=limit.name,
-            object=limit.object,
-            quantity=limit.quantity,
-            is_upper=limit.is_upper,
-            limit=None if limit.limit is None else Fraction(limit.limit),
-            value=found.value,
-            verdict=found.verdict,
-            samples=samples,
-            is_time=limit.is_time,
-            reason=found.reason,
-        )
-
-    @property
-    def margin(self) -> Fraction | None:
-        """Distance of the value from the limit; negative if the limit is missed."""
-        return margin_of(self.value, self.limit, self.is_upper)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

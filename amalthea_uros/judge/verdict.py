@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import StrEnum
 from fractions import Fraction
-from typing import TypeVar
+from typing import Any, Self, TypeVar
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.judge.evidence import Ends, ObservedProcess, ObservedValues, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import SystemLimit
+from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.units import Rounding, Time, number_text, rounded_time_text, time_text
 
 
@@ -84,6 +85,50 @@ class ObservedJudgement:
     value: Fraction | None = None
     reason: str = ""
     at: Fraction | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ObservedLimit:
+    """A limit with its verdict by observation.
+
+    Attributes
+    ----------
+    name : of the requirement, or of the process with the deadline
+    limit, value : of a time, in picoseconds, or of a number; None if it is unknown
+    is_time : whether they are times
+    reason : why it is missed although the value does not show it, or not observed
+    """
+
+    name: str
+    object: str
+    quantity: str
+    is_upper: bool
+    limit: Fraction | None
+    verdict: ObservedVerdict
+    value: Fraction | None = None
+    is_time: bool = True
+    reason: str = ""
+
+    @classmethod
+    def of(cls, limit: SystemLimit, found: ObservedJudgement, **more: Any) -> Self:
+        """The result for a limit that was judged, with `more` of what a kind of results has."""
+        return cls(
+            name=limit.name,
+            object=limit.object,
+            quantity=limit.quantity,
+            is_upper=limit.is_upper,
+            limit=None if limit.limit is None else Fraction(limit.limit),
+            verdict=found.verdict,
+            value=found.value,
+            is_time=limit.is_time,
+            reason=found.reason,
+            **more,
+        )
+
+    @property
+    def margin(self) -> Fraction | None:
+        """Distance of the value from the limit; negative if the limit is missed."""
+        return margin_of(self.value, self.limit, self.is_upper)
 
 
 # Proofs

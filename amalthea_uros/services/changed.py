@@ -128,10 +128,7 @@ def description_origin(opened: SystemInput, settings: Settings, *, with_bus: boo
     InvalidArgumentError : the content of a description cannot be written as text.
     """
     from amalthea_uros.design.description.origin import DescriptionOrigin
-    from amalthea_uros.design.description.texts import described
 
-    # Files that the text names, such as that of a platform, can have changed since the same text was read.
-    described.cache_clear()
     path = opened.paths[0] if opened.paths else TEXT
     return DescriptionOrigin(text=_text_of(opened), path=path, settings=settings, with_bus=with_bus)
 

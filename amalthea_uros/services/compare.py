@@ -12,7 +12,7 @@ from amalthea_uros.compare.comparing import DEFAULT_TOLERANCE, EVERY_SOURCE, Com
 from amalthea_uros.compare.measured.events import begins_of
 from amalthea_uros.compare.measured.measuring import MeasureOptions, measure_file
 from amalthea_uros.compare.naming import Names
-from amalthea_uros.compare.results import Comparison, Source
+from amalthea_uros.compare.results import Comparison, PredictionSource
 from amalthea_uros.compare.shares import parse_tolerance
 from amalthea_uros.compare.traces import joined
 from amalthea_uros.design.changes.change import Changes
@@ -34,7 +34,7 @@ def compare(
     measured: Measured,
     *,
     tolerance: str | float | Fraction = DEFAULT_TOLERANCE,
-    by: Iterable[Source | str] = EVERY_SOURCE,
+    by: Iterable[PredictionSource | str] = EVERY_SOURCE,
     duration: TimeLike | None = None,
     seed: int = 1,
     names: Names | None = None,
@@ -105,7 +105,7 @@ def compare_files(
     )
 
 
-def _sources(names: Iterable[Source | str]) -> tuple[Source, ...]:
+def _sources(names: Iterable[PredictionSource | str]) -> tuple[PredictionSource, ...]:
     given = tuple(names)
     require("source of predictions", given, EVERY_SOURCE)
-    return tuple(map(Source, given))
+    return tuple(map(PredictionSource, given))

@@ -18,7 +18,7 @@ from amalthea_uros.inchron.ids import NAMESPACE
 from amalthea_uros.inchron.read import SUFFIX, is_project_name
 from amalthea_uros.inchron.write import project_text
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.services.executor_iterations import iterations_of
+from amalthea_uros.services.build_targets import iterations_of
 from amalthea_uros.services.files import save_texts
 from amalthea_uros.services.subject import SystemInput, open_system
 

@@ -80,7 +80,8 @@ def open_system(subject: Subject, *, with_bus: bool = False) -> SystemInput:
     if isinstance(subject, Mapping) or (isinstance(subject, str) and "\n" in subject):
         from amalthea_uros.uros.described import describe_content, describe_text
 
-        described_subject = describe_text(subject) if isinstance(subject, str) else describe_content(subject)
+        describe_text.cache_clear()  # files that the text names, such as that of a platform, can have changed
+        described_subject = describe_text(subject, TEXT) if isinstance(subject, str) else describe_content(subject)
         return _described(subject, (), described_subject.assembly, with_bus)
     model = as_model(subject)
     paths = as_paths(_paths(subject)) if model is None else ()

@@ -12,9 +12,9 @@ from fractions import Fraction
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
+from amalthea_uros.judge.limits import DEADLINE, PERIOD
 from amalthea_uros.judge.margins import margin_of
-from amalthea_uros.judge.verdict import ObservedJudgement, ObservedVerdict
+from amalthea_uros.judge.verdict import ObservedLimit, ObservedVerdict
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Time
@@ -377,45 +377,12 @@ class LabelObservation(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RequirementObservation(Shown):
+class RequirementObservation(ObservedLimit, Shown):
     """The verdict on a requirement or a constraint.
 
     Attributes
     ----------
-    limit, value : of a time, in picoseconds, or of a number; None if it is unknown
-    is_time : whether they are times
-    reason : why it is missed although the value does not show it, or not observed
     at : when the value, or what is wrong, was first observed, in picoseconds; None if that is not one time
     """
 
-    name: str
-    object: str
-    quantity: str
-    is_upper: bool
-    limit: Fraction | None
-    verdict: ObservedVerdict
-    value: Fraction | None = None
-    is_time: bool = True
-    reason: str = ""
     at: Fraction | None = None
-
-    @classmethod
-    def of(cls, limit: SystemLimit, found: ObservedJudgement) -> RequirementObservation:
-        """The observation of a limit that was judged."""
-        return cls(
-            name=limit.name,
-            object=limit.object,
-            quantity=limit.quantity,
-            is_upper=limit.is_upper,
-            limit=None if limit.limit is None else Fraction(limit.limit),
-            is_time=limit.is_time,
-            verdict=found.verdict,
-            value=found.value,
-            reason=found.reason,
-            at=found.at,
-        )
-
-    @property
-    def margin(self) -> Fraction | None:
-        """Distance of the value from the limit; negative if the limit is missed."""
-        return margin_of(self.value, self.limit, self.is_upper)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from amalthea_uros._internal.files import FileError, FileTooLargeError, read_text
+from amalthea_uros._internal.files import FileError, FileFlaw, read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -79,7 +79,7 @@ def read_description(path: Path) -> Description:
 
 def read_section(path: Path, kind: type[S]) -> S:
     """A file as a section of some kind; raises as `read_description`."""
-    draft = read_draft(path, kind)
+    draft = text_draft(path, description_text(path), kind)
     if draft.section is None or draft.findings:
         raise ReadError(draft.findings)
     return draft.section
@@ -106,18 +106,13 @@ class Draft(Generic[S]):
         return _in_order([*self.findings, *more])
 
 
-def read_draft(path: Path, kind: type[S]) -> Draft[S]:
-    """A file as a section of some kind, with all that is wrong in it.
+def text_draft(path: Path, text: str, kind: type[S]) -> Draft[S]:
+    """A text as a section of some kind, as the content of a file with this path, with all that is wrong in it.
 
     Raises
     ------
-    ReadError : the file cannot be read at all.
+    ReadError : it cannot be read at all.
     """
-    return text_draft(path, _text(path), kind)
-
-
-def text_draft(path: Path, text: str, kind: type[S]) -> Draft[S]:
-    """A text as a section of some kind, as the content of a file with this path; raises as `read_draft`."""
     _refuse_xml(path, text)
     node, source, findings = read_nodes(path, text)
     if isinstance(node, ScalarNode) and node.value is None:
@@ -174,13 +169,13 @@ def _refuse_xml(path: Path, text: str) -> None:
         raise ReadError([Finding("YML001", Severity.ERROR, f"{what}, not YAML", Location(path, 1, 1), advice)])
 
 
-def _text(path: Path) -> str:
+def description_text(path: Path) -> str:
+    """The text of a file; ReadError if it cannot be read."""
     try:
         return read_text(path, DESCRIPTION_SIZE)
-    except FileTooLargeError as error:
-        raise ReadError([Finding("YML002", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
     except FileError as error:
-        raise ReadError([Finding("YML001", Severity.ERROR, error.reason, Location(path), error.advice)]) from None
+        rule = "YML002" if error.flaw is FileFlaw.SIZE else "YML001"
+        raise ReadError([Finding(rule, Severity.ERROR, error.reason, Location(path), error.advice)]) from None
 
 
 def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:

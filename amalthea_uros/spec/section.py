@@ -10,9 +10,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
 
 from amalthea_uros.diagnostics import Location
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.spec.fields import EXAMINES, REQUIRED, KeyEntry, entry
 from amalthea_uros.spec.nodes import MappingNode, Node, SequenceNode, YamlText
-from amalthea_uros.spec.type_checks import WRONG, Check, Errors, Path, SectionError, WrongValueError, check_of, wrong
+from amalthea_uros.spec.type_checks import WRONG, Check, Errors, Path, WrongValueError, check_of, wrong
 
 #: How keys begin that are for other tools, or for anchors; they are ignored.
 EXTENSION = "x-"
@@ -99,11 +100,7 @@ class DescriptionSection(metaclass=SectionKind):
     _stated: frozenset[str] = frozenset()
 
     def __init__(self, **values: Any) -> None:
-        errors: Errors = []
-        section = type(self).checked(values, (), errors)
-        if section is WRONG:
-            raise SectionError(type(self).__name__, errors)
-        self.__dict__.update(section.__dict__)
+        self.__dict__.update(type(self).model_validate(values).__dict__)
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):
@@ -136,12 +133,13 @@ class DescriptionSection(metaclass=SectionKind):
 
         Raises
         ------
-        SectionError : something in it is wrong; carries all errors.
+        InvalidArgumentError : something in it is wrong; the text has all errors.
         """
         errors: Errors = []
         section = cls.checked(value, (), errors)
         if section is WRONG:
-            raise SectionError(cls.__name__, errors)
+            lines = [f"  {'.'.join(map(str, each['loc']))}: {each['msg']}" for each in errors]
+            raise InvalidArgumentError("\n".join([f"{len(errors)} error(s) in {cls.__name__}", *lines]))
         return section  # type: ignore[no-any-return]
 
     @classmethod

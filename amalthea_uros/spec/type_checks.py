@@ -47,15 +47,6 @@ class WrongValueError(ValueError):
         self.kind = kind
 
 
-class SectionError(ValueError):
-    """All that is wrong in a section."""
-
-    def __init__(self, title: str, errors: Sequence[ErrorDetails]) -> None:
-        lines = [f"  {'.'.join(map(str, each['loc']))}: {each['msg']}" for each in errors]
-        super().__init__("\n".join([f"{len(errors)} error(s) in {title}", *lines]))
-        self.errors = list(errors)
-
-
 def wrong(errors: Errors, kind: str, loc: Path, value: Any, message: str, **context: Any) -> Any:
     """Add an error."""
     details = ErrorDetails(type=kind, loc=loc, msg=message, input=value)

@@ -11,7 +11,7 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import IO, TextIO, cast
 
-from amalthea_uros._internal.files import is_file
+from amalthea_uros._internal.files import is_directory, is_file
 from amalthea_uros._internal.limits import TRACE_LINE
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -220,3 +220,16 @@ def _listed(folder: Path) -> list[Path]:
         return list(folder.iterdir())
     except OSError:
         return []
+
+
+def digest_of(path: Path) -> str:
+    """The SHA-256 of a file, or of all files of a folder, as hexadecimal digits; "" of a stream."""
+    from hashlib import file_digest, sha256
+
+    if is_directory(path):
+        digests = (f"{digest_of(file)}  {file.relative_to(path).as_posix()}\n" for file in trace_files(path))
+        return sha256("".join(digests).encode()).hexdigest()
+    if not is_file(path):  # a stream that has been read
+        return ""
+    with path.open("rb") as stream:
+        return file_digest(stream, "sha256").hexdigest()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.platforms import complete
-from amalthea_uros.spec.read import Draft, content_draft, read_draft, text_draft
+from amalthea_uros.spec.read import Draft, content_draft, description_text, text_draft
 from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
 from amalthea_uros.trace.can.frames import EXTENDED
 from amalthea_uros.uros.assemble import Assembly, assemble
@@ -48,11 +49,17 @@ def describe_file(file: Path, platform: str | None = None) -> Described:
     ------
     ReadError : the file cannot be read, or something in it is wrong; carries a finding for each mistake.
     """
-    return _described(read_draft(file, Description), folder_of(file), platform)
+    text = description_text(file)
+    # Files that the text names, such as that of a platform, can have changed since the same text was read.
+    describe_text.cache_clear()
+    if platform is None:
+        return describe_text(text, file)
+    return _described(text_draft(file, text, Description), folder_of(file), platform)
 
 
+@lru_cache(maxsize=32)
 def describe_text(text: str, path: Path = TEXT) -> Described:
-    """What the text of a description describes.
+    """What the text of a description describes; searches and edits ask for the same texts again.
 
     Parameters
     ----------

@@ -5,9 +5,8 @@ import os
 import pytest
 
 from amalthea_uros._internal.files import (
-    FileEncodingError,
     FileError,
-    FileTooLargeError,
+    FileFlaw,
     decode,
     encode,
     marked_encoding,
@@ -30,15 +29,17 @@ def test_a_byte_order_mark_is_not_part_of_the_text(tmp_path):
 
 def test_what_is_not_utf_8_is_refused(tmp_path):
     (tmp_path / "a.txt").write_bytes(b"ab\xff")
-    with pytest.raises(FileEncodingError, match=r"not UTF-8 \(byte 2\)"):
+    with pytest.raises(FileError, match=r"not UTF-8 \(byte 2\)") as raised:
         read_text(tmp_path / "a.txt", 100)
+    assert raised.value.flaw is FileFlaw.ENCODING
 
 
 def test_the_limit_is_the_largest_size_that_is_read(tmp_path):
     (tmp_path / "a").write_bytes(b"12345")
     assert read_bytes(tmp_path / "a", 5) == b"12345"
-    with pytest.raises(FileTooLargeError):
+    with pytest.raises(FileError) as raised:
         read_bytes(tmp_path / "a", 4)
+    assert raised.value.flaw is FileFlaw.SIZE
 
 
 @pytest.mark.parametrize("name", ["none", "a\0b", "a" * 300])

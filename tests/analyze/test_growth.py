@@ -3,9 +3,8 @@
 The steps are counted as lines that are executed, so that nothing depends on the machine.
 """
 
-import sys
-
 import pytest
+from growth import steps
 from hand_made_systems import READ, US, WRITE, access, chain, of_parts, ticks
 
 from amalthea_uros._internal.by_name import Results
@@ -29,24 +28,6 @@ from amalthea_uros.timing.dataflow.events import EventLocator
 
 #: Tasks on a core.
 HERE = 4
-
-
-def steps(work) -> int:
-    """The number of lines of Python that some work executes; a loop on one line counts in each round."""
-    count = 0
-
-    def trace(_frame, event, _argument):
-        nonlocal count
-        count += event == "line"
-        return trace
-
-    before = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        work()
-    finally:
-        sys.settrace(before)
-    return count
 
 
 def system(bodies, period=1000, stimuli=None, **parts):

@@ -5,6 +5,8 @@ import yaml
 from support import ROOT
 
 import amalthea_uros as amuros
+from amalthea_uros.services.analyze import analyze_files
+from amalthea_uros.uros import described
 
 YAML = ROOT / "samples" / "bodas-test-advanced.yaml"
 MODEL = ROOT / "samples" / "executor.amxmi"
@@ -111,3 +113,10 @@ def test_no_paths_and_no_changes():
         amuros.analyze([])
     with pytest.raises(TypeError, match="expected changes such as"):
         amuros.what_if(YAML, None)
+
+
+def test_a_description_is_assembled_once(monkeypatch):
+    assembled, assemble = [], described.assemble
+    monkeypatch.setattr(described, "assemble", lambda *parts: assembled.append(parts) or assemble(*parts))
+    analyze_files(YAML, with_missing=True)
+    assert len(assembled) == 1

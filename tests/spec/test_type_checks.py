@@ -6,9 +6,10 @@ from typing import Annotated
 
 import pytest
 
+from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.spec.fields import After, Before, Limits, entry, examines
 from amalthea_uros.spec.section import DescriptionSection
-from amalthea_uros.spec.type_checks import SectionError, WrongValueError
+from amalthea_uros.spec.type_checks import WrongValueError
 
 
 def no_seven(value):
@@ -68,12 +69,17 @@ def test_all_errors_have_their_places(content, errors):
     if errors is None:  # a mistake of a function that converts is one of the program
         with pytest.raises(TypeError):
             OuterSection.model_validate(content)
-    elif errors:
-        with pytest.raises(SectionError) as raised:
-            OuterSection.model_validate(content)
-        assert [(each["type"], ".".join(map(str, each["loc"]))) for each in raised.value.errors] == errors
-    else:
-        assert isinstance(OuterSection.model_validate(content), OuterSection)
+        return
+    found = []
+    section = OuterSection.checked(content, (), found)
+    assert [(each["type"], ".".join(map(str, each["loc"]))) for each in found] == errors
+    assert isinstance(section, OuterSection) is not bool(errors)
+
+
+def test_a_section_that_is_made_of_wrong_values_says_all_that_is_wrong():
+    with pytest.raises(InvalidArgumentError) as raised:
+        OuterSection(first={"low": -1}, does=2)
+    assert str(raised.value) == "2 error(s) in OuterSection\n  first.low: too small\n  does: expected true or false"
 
 
 def test_sections_know_what_is_stated_and_do_not_change():

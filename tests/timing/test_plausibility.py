@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from amalthea_uros.timing.demand.plausibility import unit_hint
+from amalthea_uros.timing.activation.load import unit_hint
 
 
 @pytest.mark.parametrize(

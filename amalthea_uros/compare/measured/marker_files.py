@@ -45,13 +45,6 @@ _FORMS = {
 _QUANTITIES = ("duration", *JobMetric)
 
 
-class _WrongError(Exception):
-    """Something at a place is wrong."""
-
-    def __init__(self, place: NodePlace, message: str, advice: str = "") -> None:
-        self.place, self.message, self.advice = place, message, advice
-
-
 def read_markers(path: Path, signals: Signals) -> tuple[Measurable, ...]:
     """The objects of a file.
 
@@ -92,33 +85,32 @@ class _MarkerFileReader:
     def objects(self, node: Node) -> tuple[Measurable, ...]:
         """All objects; those with an error are left out, and a finding is added."""
         if not isinstance(node, MappingNode) or not node.items:
-            self._add(
-                _WrongError(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}")
-            )
+            wrong = self._wrong(node.place, "a file with markers names objects", "An example: Task: {start: 0x101, end: 0x102}")
+            self.findings += wrong.findings
             return ()
         self._nodes = node.items
         found = []
         for name, item in node.items.items():
             try:
                 found.append(self._object(name, item))
-            except _WrongError as error:
-                self._add(error)
+            except ReadError as error:
+                self.findings += error.findings
         return tuple(found)
 
-    def _add(self, error: _WrongError) -> None:
-        location = self.source.location(error.place)
-        self.findings.append(Finding("MEA010", Severity.ERROR, error.message, location, error.advice))
+    def _wrong(self, place: NodePlace, message: str, advice: str = "") -> ReadError:
+        """Something at a place is wrong."""
+        return ReadError([Finding("MEA010", Severity.ERROR, message, self.source.location(place), advice)])
 
     def _object(self, name: str, node: Node) -> Measurable:
         if not isinstance(node, MappingNode):
-            raise _WrongError(node.place, f"{name!r} must have keys", "An example: {start: 0x101, end: 0x102}")
+            raise self._wrong(node.place, f"{name!r} must have keys", "An example: {start: 0x101, end: 0x102}")
         form = next((form for form in _FORMS if form in node.items), None)
         if form is None:
-            raise _WrongError(node.place, f"{name!r} has no markers", f"Add one of the keys {', '.join(_FORMS)}.")
+            raise self._wrong(node.place, f"{name!r} has no markers", f"Add one of the keys {', '.join(_FORMS)}.")
         for key in node.items:
             if key not in _FORMS[form]:
                 advice = did_you_mean(key, _FORMS[form]) or f"known: {', '.join(_FORMS[form])}"
-                raise _WrongError(node.keys[key], f"{name!r} has an unknown key {key!r}", advice)
+                raise self._wrong(node.keys[key], f"{name!r} has an unknown key {key!r}", advice)
         build: dict[str, Callable[[str, MappingNode], Measurable]] = {
             "start": self._pair,
             "from": self._chain,
@@ -150,7 +142,7 @@ class _MarkerFileReader:
         try:
             refuse_overlap(first, second)
         except ValueError as error:
-            raise _WrongError(place, str(error)) from None
+            raise self._wrong(place, str(error)) from None
 
     def _end_of_chain(self, name: str, node: MappingNode, key: str, default: str) -> Marker:
         """A marker, or that of another object: `Task`, `Task.start`, `Task.end`."""
@@ -165,7 +157,7 @@ class _MarkerFileReader:
             names = [each for each, item in self._nodes.items() if isinstance(item, MappingNode) and "start" in item.items]
             advice = did_you_mean(other, names) or f"known: {', '.join(names)}"
             message = f"{text!r} in {name!r} is neither a marker nor an object with a start and an end"
-            raise _WrongError(node.items[key].place, message, advice) from None
+            raise self._wrong(node.items[key].place, message, advice) from None
 
     def _value(self, name: str, node: MappingNode) -> ReportedValue:
         (value,), marker = self._reported(name, node, ("value",))
@@ -176,7 +168,7 @@ class _MarkerFileReader:
         keys = ("min", "mean", "max", "deviation", "count")
         (low, mean, high, deviation, count), marker = self._reported(name, node, keys)
         if low is None or mean is None or high is None:
-            raise _WrongError(node.place, f"the statistics of {name!r} need the keys min, mean and max")
+            raise self._wrong(node.place, f"the statistics of {name!r} need the keys min, mean and max")
         common = self._common(name, node)
         return ReportedStatistics(
             name=name, marker=marker, min=low, mean=mean, max=high, deviation=deviation, count=count, **common
@@ -191,7 +183,7 @@ class _MarkerFileReader:
             markers.add(self._marker(name, node, "frame"))
         if len(markers) != 1:
             message = f"the values of {name!r} are in {len(markers)} frames" if markers else f"{name!r} names no frame"
-            raise _WrongError(node.place, message, "State the identifier of the frame that has them: frame: 0x18000100")
+            raise self._wrong(node.place, message, "State the identifier of the frame that has them: frame: 0x18000100")
         scales = [Fraction(1) if key == "count" else unit for key in keys]
         decoders = [
             None if value is None else _scaled(value.decode, scale) for value, scale in zip(values, scales, strict=True)
@@ -209,7 +201,7 @@ class _MarkerFileReader:
         if baseline is not None and baseline not in self._nodes:
             advice = did_you_mean(baseline, self._nodes) or f"known: {', '.join(self._nodes)}"
             message = f"the baseline {baseline!r} of {name!r} is not an object of this file"
-            raise _WrongError(node.items["baseline"].place, message, advice)
+            raise self._wrong(node.items["baseline"].place, message, advice)
         return {"kind": MeasuredKind(kind), "quantity": quantity, "baseline": baseline}
 
     def _choice(self, name: str, node: MappingNode, key: str, choices: Iterable[str], default: str) -> str:
@@ -218,15 +210,15 @@ class _MarkerFileReader:
         text, known = self._text(name, node, key), list(map(str, choices))
         if text not in known:
             advice = did_you_mean(text, known) or f"known: {', '.join(known)}"
-            raise _WrongError(node.items[key].place, f"{text!r} is no {key} of {name!r}", advice)
+            raise self._wrong(node.items[key].place, f"{text!r} is no {key} of {name!r}", advice)
         return text
 
     def _text(self, name: str, node: MappingNode, key: str) -> str:
         value = node.items.get(key)
         if value is None:
-            raise _WrongError(node.place, f"{name!r} has no key {key!r}")
+            raise self._wrong(node.place, f"{name!r} has no key {key!r}")
         if not isinstance(value, ScalarNode) or value.value is None or isinstance(value.value, bool):
-            raise _WrongError(value.place, f"{key!r} of {name!r} must be a text")
+            raise self._wrong(value.place, f"{key!r} of {name!r} must be a text")
         return str(value.value)
 
     def _marker(self, name: str, node: MappingNode, key: str) -> Marker:
@@ -249,7 +241,7 @@ class _MarkerFileReader:
     def _unit(self, name: str, node: MappingNode) -> Fraction:
         """The picoseconds of the unit: `us`, or `0.1 us`."""
         if "unit" not in node.items:
-            raise _WrongError(node.place, f"{name!r} has no unit", "State the unit of the values: unit: us")
+            raise self._wrong(node.place, f"{name!r} has no unit", "State the unit of the values: unit: us")
         text = self._text(name, node, "unit")
         time: Time = self._parsed(name, node, "unit", lambda _: parse_time(text if text[:1].isdigit() else f"1 {text}"))
         return Fraction(time)
@@ -259,7 +251,7 @@ class _MarkerFileReader:
         try:
             return parse(text)
         except ValueError as error:
-            raise _WrongError(node.items[key].place, f"{key!r} of {name!r}: {error}") from None
+            raise self._wrong(node.items[key].place, f"{key!r} of {name!r}: {error}") from None
 
 
 def _scaled(decode: Decoder, scale: Fraction) -> Decoder:

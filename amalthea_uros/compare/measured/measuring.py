@@ -8,7 +8,6 @@ from pathlib import Path
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.compare.measured.adjusted import net, with_period
 from amalthea_uros.compare.measured.columns import TableColumn, ValidRows
-from amalthea_uros.compare.measured.digests import digest_of
 from amalthea_uros.compare.measured.events import measured_events
 from amalthea_uros.compare.measured.frames import measured_frames
 from amalthea_uros.compare.measured.marker_files import counter_of, read_markers
@@ -25,6 +24,7 @@ from amalthea_uros.measure.series import Measurement
 from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.names import require
 from amalthea_uros.trace.can.logs import is_can_log
+from amalthea_uros.trace.files import digest_of
 from amalthea_uros.trace.readers import format_of
 from amalthea_uros.units import Time
 

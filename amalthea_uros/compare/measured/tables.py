@@ -47,11 +47,11 @@ def measured_table(
         if meant.count((name, quantity)) > 1:
             raise InvalidArgumentError(f"two columns are the {quantity.replace('_', ' ')} of {name!r}; leave one of them out")
     problems = TraceProblems(path)
-    table: _Table | None = None
+    table: _TableOfValues | None = None
     with opened_text(path, problems) as lines:
         records = read_records(lines, problems)
         header = next(records, Record(1, []))
-        table = _Table(problems, HeaderColumns(path, header).of(columns, valid, unit), window)
+        table = _TableOfValues(problems, HeaderColumns(path, header).of(columns, valid, unit), window)
         if not table.has_times:
             window.refuse_part(path.name)
         for record in records:
@@ -72,7 +72,7 @@ def _is_empty(fields: Sequence[str], place: int) -> bool:
 
 
 @dataclass(slots=True)
-class _Table:
+class _TableOfValues:
     """The values of the columns, and how many rows have none."""
 
     problems: TraceProblems

@@ -58,7 +58,7 @@ def measured_values(path: Path, window: MeasurementWindow) -> Measurement:
     problems = TraceProblems(path)
     with opened_text(path, problems) as lines:
         records = read_records(lines, problems)
-        table = _Table(problems, window, _only_columns(path, next(records, Record(1, []))))
+        table = _TableOfTimes(problems, window, _only_columns(path, next(records, Record(1, []))))
         if not {"time", "end"} & table.columns.keys():
             window.refuse_part(path.name)
         for record in records:
@@ -84,7 +84,7 @@ def _only_columns(path: Path, header: Record) -> dict[str, TimesColumn]:
 
 
 @dataclass(slots=True)
-class _Table:
+class _TableOfTimes:
     problems: TraceProblems
     window: MeasurementWindow
     columns: dict[str, TimesColumn]

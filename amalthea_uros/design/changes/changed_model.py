@@ -28,13 +28,13 @@ def update_model(model: Model, changes: Sequence[Change], settings: Settings) ->
     InvalidArgumentError : a change cannot be written into the model.
     """
     from amalthea_uros.bridge.extract import extract
-    from amalthea_uros.bridge.update import UnwritableError, update
+    from amalthea_uros.bridge.update import update
 
     old = extract(model).system
     new = changed_system(old, changes, settings)
     try:
         update(model, old, new)
-    except UnwritableError as error:
+    except InvalidArgumentError as error:
         raise InvalidArgumentError(f"the change cannot be written into the model: {error}") from None
     except WriteError as error:
         reason = next((finding.message for finding in error.findings), str(error))

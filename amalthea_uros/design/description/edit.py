@@ -12,7 +12,7 @@ from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system
 from amalthea_uros.design.description.assign import Assignment, apply_assignments
 from amalthea_uros.design.description.built_objects import BuiltObjects
-from amalthea_uros.design.description.texts import described, edited_assembly
+from amalthea_uros.design.description.texts import edited_assembly
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Counter, Periodic
@@ -21,6 +21,7 @@ from amalthea_uros.timing.activation.releases import counters, first_time, nomin
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.units import Time, time_text
+from amalthea_uros.uros.described import describe_text
 
 #: An object and what is compared of it -> the value.
 Meaning: TypeAlias = Mapping[tuple[str, str], object]
@@ -118,7 +119,7 @@ def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = (
     ReadError : something in the text is wrong.
     InvalidArgumentError : a change cannot be stated in a description, or would have other effects than stated.
     """
-    before = described(text, path)
+    before = describe_text(text, path)
     expected = changed_system(before.assembly.system, changes, Settings())
     built = BuiltObjects(before, text)
     assignments = [assignment for change in changes for assignment in built.assignments(change)]

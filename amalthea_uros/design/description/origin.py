@@ -16,11 +16,12 @@ from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of, matching, short_name
 from amalthea_uros.design.description.refusals import refusal
 from amalthea_uros.design.description.text_edits import rendered, value_text
-from amalthea_uros.design.description.texts import described, edited_assembly
+from amalthea_uros.design.description.texts import edited_assembly
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.uros.assemble import Assembly
+from amalthea_uros.uros.described import describe_text
 
 #: Keys that are changed in the system that is built, because it is an assumption about it which no description states.
 ASSUMED = ("communication", "arrival_jitter")
@@ -63,7 +64,7 @@ class DescriptionOrigin:
     @property
     def present(self) -> Configuration:
         """The system and the settings without changes."""
-        return apply(self._system(described(self.text, self.path).assembly), self.settings, self.assumed)
+        return apply(self._system(describe_text(self.text, self.path).assembly), self.settings, self.assumed)
 
     @property
     def keys(self) -> tuple[DescriptionKey, ...]:
@@ -103,7 +104,7 @@ class DescriptionOrigin:
         """The values before and after changes, and what of tasks follows from them."""
         if not changes:
             return ()
-        divided, old = self.divided(changes), self._system(described(self.text, self.path).assembly)
+        divided, old = self.divided(changes), self._system(describe_text(self.text, self.path).assembly)
         new = self._changed_system(divided, changes)
         text = self._text(divided)
         values = {each.target: self._difference(each, key, text, divided) for each, key in divided.stated}
@@ -151,7 +152,7 @@ class DescriptionOrigin:
     def _of_built_object(self, change: Change) -> Sequence[Assignment]:
         """The edits for a value of an object that is built, such as the runnable of a task."""
         try:
-            return BuiltObjects(described(self.text, self.path), self.text).assignments(change)
+            return BuiltObjects(describe_text(self.text, self.path), self.text).assignments(change)
         except InvalidArgumentError as error:
             raise refusal(change, self.keys, self.present.system, error) from None
 
@@ -187,4 +188,4 @@ def _consequences(old: System, new: System, shown: dict[str, Difference]) -> lis
 
 @lru_cache(maxsize=4)
 def _keys(text: str, path: Path) -> tuple[DescriptionKey, ...]:
-    return keys_of(described(text, path).whole, text)
+    return keys_of(describe_text(text, path).whole, text)

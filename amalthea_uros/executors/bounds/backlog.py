@@ -28,8 +28,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import received, variation
-from amalthea_uros.executors.semantics.losses import publications, recovers
-from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.executors.semantics.losses import parts, publications, recovers
 from amalthea_uros.executors.semantics.suspension import acknowledgements, heartbeats
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission

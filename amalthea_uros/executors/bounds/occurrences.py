@@ -30,8 +30,7 @@ from amalthea_uros.executors.bounds.sent_again import sent_again
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
 from amalthea_uros.executors.results import ExecutorOccurrences, HandleResult
-from amalthea_uros.executors.semantics.losses import recovers
-from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.executors.semantics.losses import parts, recovers
 from amalthea_uros.executors.semantics.readiness import arrivals, reads_in_waits
 from amalthea_uros.executors.semantics.suspension import acknowledgements
 from amalthea_uros.perf.executors import Handle, HandleKind, Publication

@@ -27,7 +27,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import protocol_overhead
 from amalthea_uros.executors.bounds.cycle import Cycle
-from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.executors.semantics.losses import parts
 from amalthea_uros.executors.semantics.readiness import arrivals, certain_rate, messages, sharing
 from amalthea_uros.executors.semantics.suspension import acknowledgements
 from amalthea_uros.perf.executors import Handle

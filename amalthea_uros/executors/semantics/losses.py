@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Losses, Purpose, Transmission, Wire, WireKind
 from amalthea_uros.perf.software import Task
@@ -97,3 +97,12 @@ def _has_threads(wire: Wire, system: System) -> bool:
     """Whether tasks of the middleware handle messages of a wire."""
     passed = {name for each in system.network.transmissions if each.wire == wire.name for name in each.processes}
     return any(isinstance(system.processes.get(name), Task) for name in passed)
+
+
+def parts(acknowledgement: Transmission, system: System) -> int:
+    """How many parts of a message are acknowledged one by one."""
+    stimuli = set(system.processes[acknowledgement.name].stimuli)
+    counts = (
+        sum(isinstance(each, Trigger) and each.stimulus in stimuli for each in walk(body)) for body in system.software.bodies
+    )
+    return max(1, *counts)

@@ -25,7 +25,7 @@ from collections.abc import Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.executors.semantics.loops import longest_wait
-from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.executors.semantics.losses import parts
 from amalthea_uros.executors.semantics.readiness import messages, other_threads
 from amalthea_uros.perf.executors import Executor, Handle, Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission

@@ -233,7 +233,7 @@ def section(title: str, *blocks: Block, lead: str = "", anchor: str = "", is_det
 
 
 @dataclass(frozen=True, slots=True)
-class Document:
+class ResultDocument:
     """A whole document.
 
     Attributes
@@ -259,6 +259,6 @@ def document(
     opening: str = "",
     findings: Sequence[Finding] = (),
     kept: Sequence[Block] = (),
-) -> Document:
+) -> ResultDocument:
     """A document with the sections in which there is something."""
-    return Document([each for each in sections if each.blocks], closing, title, opening, findings, kept)
+    return ResultDocument([each for each in sections if each.blocks], closing, title, opening, findings, kept)

@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from amalthea_uros.report.basics.document import Document
+    from amalthea_uros.report.basics.document import ResultDocument
 
 #: Classes of results, and the modules with the functions that make documents of them.
 DOCUMENTS = {
@@ -45,8 +45,8 @@ DOCUMENTS = {
 }
 
 
-def document_of(result: object) -> Document:
+def document_of(result: object) -> ResultDocument:
     """What is shown of a result."""
     module, _, function = DOCUMENTS[type(result).__name__].partition(".")
-    found: Document = getattr(import_module(f"{__name__}.{module}"), function)(result)
+    found: ResultDocument = getattr(import_module(f"{__name__}.{module}"), function)(result)
     return found

@@ -17,7 +17,7 @@ from amalthea_uros.report.basics.document import (
     Badge,
     Block,
     Cell,
-    Document,
+    ResultDocument,
     Section,
     Sentences,
     Table,
@@ -61,7 +61,7 @@ _CALLBACKS = "Callbacks (from the activation of the process to the end of the ca
 _EFFECTS = {Effect.BETTER: Tone.GOOD, Effect.WORSE: Tone.BAD, Effect.UNKNOWN: Tone.UNKNOWN}
 
 
-def analysis_document(result: AnalysisResult) -> Document:
+def analysis_document(result: AnalysisResult) -> ResultDocument:
     """Tables of loads, response times, chains and requirements, with methods, assumptions and the verdict."""
     analysis = result.analysis
     return document(
@@ -94,18 +94,18 @@ def analysis_document(result: AnalysisResult) -> Document:
     )
 
 
-def analysis_alone(analysis: Analysis) -> Document:
+def analysis_alone(analysis: Analysis) -> ResultDocument:
     """The same of something that is not in files, after what is wrong with it."""
     alone = analysis_document(analysis_result(analysis))
     return document((flaws(analysis.findings), *alone.sections), alone.closing)
 
 
-def what_if_document(result: WhatIf) -> Document:
+def what_if_document(result: WhatIf) -> ResultDocument:
     """What was changed, and what that does to the results."""
     return document((section("", lines(*map(str, result.differences))), impact_section(result.impact)))
 
 
-def proposal_document(proposal: Proposal) -> Document:
+def proposal_document(proposal: Proposal) -> ResultDocument:
     """Better priorities for the tasks of a scheduler, or why there are none."""
     return document([priorities_section(proposal)])
 

@@ -18,7 +18,7 @@ from amalthea_uros.compare.results import (
     is_bound,
 )
 from amalthea_uros.measure.series import MeasuredKind
-from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
+from amalthea_uros.report.basics.document import ResultDocument, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
 from amalthea_uros.report.wording.cells import words
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
@@ -381,7 +381,7 @@ def _limit_cells(limit: MeasuredLimit) -> tuple[str, ...]:
     )
 
 
-def comparison_document(result: Comparison) -> Document:
+def comparison_document(result: Comparison) -> ResultDocument:
     """Tables of predictions, bounds, distributions and limits, what was not compared, and whether the model holds."""
     predictions = "Predictions (min / mean / max; deviation: of the measurement, positive if more was measured than predicted)"
     predicted = ("object", "quantity", ">values", ">measured", ">predicted", "claim", ">deviation", ">distance", "verdict", "")

@@ -11,9 +11,9 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.basics.document import (
     Badge,
     Cell,
-    Document,
     Lead,
     Listing,
+    ResultDocument,
     Section,
     Sentences,
     Table,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from amalthea_uros.uros.middleware.options import Option
 
 
-def build_document(result: BuildResult) -> Document:
+def build_document(result: BuildResult) -> ResultDocument:
     """Which file was written, with tables of tasks, interrupts, messages, and the start and the pools of the middleware."""
     assembly = result.assembly
     objects = counted(sum(1 for _ in result.model.walk()), "object")
@@ -213,7 +213,7 @@ def pools_section(content: ReportContent) -> Section | None:
     return Section("pools", "Static pools", lead, [_pools(assembly), _memory(assembly.memory), *files])
 
 
-def generate_document(result: GenerateResult) -> Document:
+def generate_document(result: GenerateResult) -> ResultDocument:
     """The names of the files, the options in them, the memory of the description, and what to do next."""
     from amalthea_uros.uros.generated_options import values_of
 
@@ -250,7 +250,7 @@ _NEXT_MEASURED = (
 )
 
 
-def init_document(result: InitResult) -> Document:
+def init_document(result: InitResult) -> ResultDocument:
     """The names of the written files, and the next commands."""
     written = lines(*_written(result))
     files = [shlex.quote(str(path)) for path in (result.path, *result.measurement)]
@@ -267,7 +267,7 @@ def _written(result: InitResult) -> Iterator[Lead]:
         yield Lead(", ".join(map(str, result.measurement)), ": its measurement")
 
 
-def catalogue_document(catalogue: Catalogue) -> Document:
+def catalogue_document(catalogue: Catalogue) -> ResultDocument:
     """A line for each board and each example that a description can begin with."""
     offers = {"Boards (--board NAME)": catalogue.boards, "Examples (--example NAME)": catalogue.examples}
     return document(section(title, _offers(offered)) for title, offered in offers.items())
@@ -283,7 +283,7 @@ def _in_columns(pairs: Sequence[tuple[str, str]]) -> Sentences:
     return Sentences([f"{name:<{width}}  {meaning}" for name, meaning in pairs])
 
 
-def import_document(result: ImportResult) -> Document:
+def import_document(result: ImportResult) -> ResultDocument:
     """The name of the description, and how many gaps are to be filled."""
     written = "a description: made" if result.path is None else f"{result.path}: written"
     return document([section("", lines(f"{written}, with {counted(result.gaps, 'gap')} to fill (TODO)"))])

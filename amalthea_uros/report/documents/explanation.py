@@ -12,7 +12,7 @@ from amalthea_uros.analyze.results.chains import LatencyQuantity
 from amalthea_uros.analyze.results.explanations import OriginKind
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
-from amalthea_uros.report.basics.document import Block, Document, Lead, Sentences, Table, document, lines, section, table
+from amalthea_uros.report.basics.document import Block, Lead, ResultDocument, Sentences, Table, document, lines, section, table
 from amalthea_uros.report.documents.analysis import callbacks
 from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, load_text, share_text, words
 from amalthea_uros.report.wording.chains import latency_cells, quantity_text, value_text
@@ -46,7 +46,7 @@ _RELEASES = {HandleKind.TIMER: "when it is due", HandleKind.LOOP_ITEM: "the begi
 _ARRIVAL = "when it has arrived at the controller"
 
 
-def explanation_document(explanation: Explanation) -> Document:
+def explanation_document(explanation: Explanation) -> ResultDocument:
     """What a value consists of; if a process and a chain have the name, both are shown."""
     process, chain = explanation.process, explanation.chain
     return document(
@@ -356,7 +356,7 @@ def tried(found: Improvements) -> str:
     return f"{text}; {found.untried:,} more were not tried" if found.untried else text
 
 
-def chain_document(detail: ChainDetail) -> Document:
+def chain_document(detail: ChainDetail) -> ResultDocument:
     """All values of a chain, and how its events are connected."""
     chain = detail.chain
     values = sorted(
@@ -374,7 +374,7 @@ def chain_document(detail: ChainDetail) -> Document:
 _PATH_COLUMNS = ("min", "reaction", "data age")
 
 
-def paths_document(result: PathsResult) -> Document:
+def paths_document(result: PathsResult) -> ResultDocument:
     """Paths through processes, with their numbers and latencies."""
     if not result.paths:
         where = "" if result.are_all else " among those that were examined; there are too many for all"

@@ -13,10 +13,10 @@ from amalthea_uros.diagnostics import Finding, Severity, worst
 from amalthea_uros.findings.targets import summary
 from amalthea_uros.report.basics.document import (
     Block,
-    Document,
     Folded,
     Lead,
     Listing,
+    ResultDocument,
     Section,
     Sentences,
     ShownFinding,
@@ -46,7 +46,7 @@ _MOST = 20
 _SEVERITIES = tuple(Severity)
 
 
-def check_document(result: CheckResult) -> Document:
+def check_document(result: CheckResult) -> ResultDocument:
     """Each flaw with its line, of a rule that fires very often the first ones; and the number of all."""
     groups = result.presentation.groups
     count: Counter[str] = Counter()
@@ -81,7 +81,7 @@ def _targets(presentation: Presentation) -> list[str]:
     return [summary(target, (group.shown for group in groups)) for target, groups in presentation.targets.items()]
 
 
-def statistics_document(statistics: CheckStatistics) -> Document:
+def statistics_document(statistics: CheckStatistics) -> ResultDocument:
     """A table of the rules, the most frequent first."""
     presentation = statistics.result.presentation
     count = Counter((finding.rule, str(finding.severity)) for finding in presentation.shown)
@@ -90,21 +90,21 @@ def statistics_document(statistics: CheckStatistics) -> Document:
     return document([section("", table("", ("rule", "severity", ">findings"), rows), total)])
 
 
-def rules_document(result: RulesResult) -> Document:
+def rules_document(result: RulesResult) -> ResultDocument:
     """A row for each rule."""
     rows = [(rule.id, str(rule.severity), profile_name(rule.id), rule.title) for rule in result.rules]
     rules = table("", ("rule", "severity", "profile", "what is wrong"), rows)
     return document([section("", rules or lines("no rules"))])
 
 
-def meta_document(result: MetaCheck) -> Document:
+def meta_document(result: MetaCheck) -> ResultDocument:
     """Whether a `colcon.meta` fits an application; its findings are shown where those of all commands are."""
     found = findings_text(result.findings) if result.findings else ""
     outcome = found or f"holds for {result.description}, and nothing is larger than needed"
     return document([section("", lines(Lead(str(result.path), f": {outcome}")))])
 
 
-def fix_document(result: FixResult) -> Document:
+def fix_document(result: FixResult) -> ResultDocument:
     """What was repaired: a line for each rule and model."""
     from amalthea_uros.metamodel.versions import spelled
 
@@ -124,13 +124,13 @@ def fix_document(result: FixResult) -> Document:
     return document([section("", lines(*repaired, *not_repaired))])
 
 
-def format_document(result: FormatResult) -> Document:
+def format_document(result: FormatResult) -> ResultDocument:
     """Which files were not in canonical form."""
     done = "rewritten" if result.is_written else "would be rewritten"
     return document([section("", lines(*(f"{file.path}: {done}" for file in result.changed)))])
 
 
-def patch_document(diff: FilesDiff) -> Document:
+def patch_document(diff: FilesDiff) -> ResultDocument:
     """What changes in files: a unified diff for each of them, as people and `patch` read it."""
     return document([section("", Listing("", [line for file in diff.files for line in _changed(file, diff.label)]))])
 

@@ -12,7 +12,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.compare.calibration.calibration import Calibration
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.measure.series import Counts, Measurement, Series
-from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
+from amalthea_uros.report.basics.document import ResultDocument, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
 from amalthea_uros.report.wording.cells import shortened
 from amalthea_uros.simulate.observations import TimeHistogram
@@ -159,7 +159,7 @@ def rows(measurement: Measurement) -> Iterator[tuple[str, ...]]:
             yield row(series)
 
 
-def measurement_document(measurement: Measurement) -> Document:
+def measurement_document(measurement: Measurement) -> ResultDocument:
     """Tables of the times, of what was subtracted, and of what could not be used, with how it was measured."""
     baselines = "Baselines (their means are subtracted above; single net times are within the last two columns)"
     sections = (
@@ -179,7 +179,7 @@ def measurement_document(measurement: Measurement) -> Document:
 _LONGEST = 32
 
 
-def calibration_document(calibration: Calibration) -> Document:
+def calibration_document(calibration: Calibration) -> ResultDocument:
     """A row for each measured value, and how many are written into the description."""
     titles = ("value", ">samples", ">min", ">mean", ">max", "described", "now", "")
     values = table("", titles, map(_calibrated, calibration.values))

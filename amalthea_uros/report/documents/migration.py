@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
+from amalthea_uros.report.basics.document import ResultDocument, Sentences, document, section, table
 from amalthea_uros.report.wording.cells import shortened
 from amalthea_uros.services.migrate import FileState, MigratedFile, MigrationChange, MigrationResult, NoteKind
 
@@ -96,7 +96,7 @@ def _version_key(version: str) -> tuple[int, ...]:
     return (0 if is_itea else 1, *digits) if version else ()
 
 
-def migration_document(result: MigrationResult) -> Document:
+def migration_document(result: MigrationResult) -> ResultDocument:
     """The files, everything that was lost, what each step did, and the sum of it."""
     lost = ((each.object, each.location or "", each.message, each.detail) for each in result.lost)
     sections = (

@@ -10,7 +10,18 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.difference.comparison import ChangeKind, ModelChange
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.report.basics.document import Document, Lead, Line, Section, Sentences, Tone, document, lines, section, table
+from amalthea_uros.report.basics.document import (
+    Lead,
+    Line,
+    ResultDocument,
+    Section,
+    Sentences,
+    Tone,
+    document,
+    lines,
+    section,
+    table,
+)
 
 if TYPE_CHECKING:
     from amalthea_uros.design.changes.apply import Difference
@@ -24,7 +35,7 @@ if TYPE_CHECKING:
 _MOST_CLASSES, _MOST_MEMORIES = 12, 6
 
 
-def info_document(result: InfoResult) -> Document:
+def info_document(result: InfoResult) -> ResultDocument:
     """Tables of the files, cores, processes, chains and classes of a model."""
     summary = result.summary
     unresolved = [counted(summary.unresolved, "unresolved reference")] if summary.unresolved else []
@@ -95,7 +106,7 @@ _MARKS = {ChangeKind.ADDED: _ADDED, ChangeKind.REMOVED: _REMOVED, ChangeKind.CHA
 _IDENTIFYING = {"period": "every ", "execution_time": "", "priority": "priority ", "core": "", "frequency": ""}
 
 
-def diff_document(result: DiffResult) -> Document:
+def diff_document(result: DiffResult) -> ResultDocument:
     """What changes the timing, all changes grouped by object, how many there are, and what they do to the results."""
     from amalthea_uros.report.documents.analysis import impact_section
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from amalthea_uros.report.basics.document import Document, Sentences, document, section, table
+from amalthea_uros.report.basics.document import ResultDocument, Sentences, document, section, table
 from amalthea_uros.report.wording.cells import at_most, words
 
 if TYPE_CHECKING:
     from amalthea_uros.services.own_methods import MethodBounds
 
 
-def methods_document(result: MethodBounds) -> Document:
+def methods_document(result: MethodBounds) -> ResultDocument:
     """Each bound beside the tightest one of the analysis."""
     rows = [
         (

@@ -15,7 +15,7 @@ from amalthea_uros.design.optimize.problem import Conclusion, Feasibility
 from amalthea_uros.design.optimize.quantities import AmountKind, dimension
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.basics.document import Block, Document, Section, Sentences, document, section, table
+from amalthea_uros.report.basics.document import Block, ResultDocument, Section, Sentences, document, section, table
 from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, load_text, words
 from amalthea_uros.report.wording.impact import impact_cells
 from amalthea_uros.units import Rounding, number_text, rounded, time_text
@@ -44,7 +44,7 @@ _GOALS = {
 _VERDICTS = {Feasibility.YES: "met", Feasibility.NO: "missed", Feasibility.UNKNOWN: "unknown"}
 
 
-def optimization_document(result: Optimization) -> Document:
+def optimization_document(result: Optimization) -> ResultDocument:
     """What was asked, the present design, the proposals with all their effects, and what the search proves."""
     sections = (
         section("Search", _question(result)),
@@ -240,7 +240,7 @@ _MOST_VARIANTS, _MOST_COLUMNS = 50, 4
 _DEFAULTS_WITHOUT = (".verdict", ".deadline_ps", ".limit_ps", ".margin_ps", SCHEDULABLE)
 
 
-def sweep_document(result: SweepResult) -> Document:
+def sweep_document(result: SweepResult) -> ResultDocument:
     """The variants with what is computed for them, and for how many everything is met."""
     columns = _columns(result)
     shown = result.outcomes[:_MOST_VARIANTS]

@@ -14,7 +14,7 @@ from amalthea_uros.judge.causes import distinct
 from amalthea_uros.judge.verdict import WORST_OBSERVED_FIRST, ObservedVerdict
 from amalthea_uros.report.basics.document import (
     Cell,
-    Document,
+    ResultDocument,
     Section,
     Sentences,
     Table,
@@ -120,7 +120,7 @@ def _not_observed(simulation: Simulation) -> str:
     return f"{count}, because of {others[0].name!r}: {others[0].reason}" if others else count
 
 
-def simulation_document(result: SimulationResult) -> Document:
+def simulation_document(result: SimulationResult) -> ResultDocument:
     """Tables of loads, response times, chains and requirements, with assumptions and what was observed."""
     simulation = result.simulation
     of_files = f" of {joined(result.paths)}" if result.paths else ""
@@ -130,7 +130,7 @@ def simulation_document(result: SimulationResult) -> Document:
     return document(_sections(simulation, metrics, changed), closing_line(simulation), opening=opening)
 
 
-def simulation_alone(simulation: Simulation) -> Document:
+def simulation_alone(simulation: Simulation) -> ResultDocument:
     """The same of something that is not in files, after what the simulation does not take into account."""
     sections = (flaws(simulation.findings), section("", lines(f"Simulation: {_run_text(simulation)}")), *_sections(simulation))
     return document(sections, closing_line(simulation))
@@ -306,7 +306,7 @@ def _remark(requirement: RequirementObservation) -> str:
 _MOST_RUNS = 50
 
 
-def campaign_document(result: CampaignResult) -> Document:
+def campaign_document(result: CampaignResult) -> ResultDocument:
     """The runs with what was observed in them, and how many of them missed something or failed."""
     shown = result.outcomes[:_MOST_RUNS]
     targets = list(dict.fromkeys(change.target for outcome in shown for change in outcome.run.changes))

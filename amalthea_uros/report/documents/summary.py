@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import impact
 from amalthea_uros.judge.summary import Schedulable
-from amalthea_uros.report.basics.document import Block, Document, Section, Sentences, Table, document, section, table
+from amalthea_uros.report.basics.document import Block, ResultDocument, Section, Sentences, Table, document, section, table
 from amalthea_uros.report.documents.analysis import impact_section, latencies_of_messages
 from amalthea_uros.report.documents.judged import limits_table
 from amalthea_uros.report.documents.page import chains_table
@@ -25,7 +25,7 @@ _ICONS = {
 }
 
 
-def summary_document(content: ReportContent) -> Document:
+def summary_document(content: ReportContent) -> ResultDocument:
     """The verdict, the tightest requirements and the worst chains, and with changes what they did."""
     summary = content.analysis.summary
     title = f"{_ICONS[summary.schedulable]} Timing of {_short(content.title, _MOST_NAME)}"

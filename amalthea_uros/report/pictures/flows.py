@@ -35,7 +35,7 @@ class Flow:
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class FlowSource:
     """What comes from outside: a stimulus that is not periodic, or a channel that no process fills.
 
     Attributes
@@ -112,23 +112,23 @@ class SystemFlows:
         return ""
 
     @cached_property
-    def sources(self) -> tuple[Source, ...]:
+    def sources(self) -> tuple[FlowSource, ...]:
         """What comes from outside; periodic activations are not listed, because they are said at the process."""
         return (*self._stimuli(), *self._messages())
 
-    def _stimuli(self) -> Iterable[Source]:
+    def _stimuli(self) -> Iterable[FlowSource]:
         for stimulus in self.system.stimuli.stimuli:
             targets = tuple(each.name for each in self.system.processes.values() if stimulus.name in each.stimuli)
             if targets and not isinstance(stimulus, Periodic | InterProcess | EventTriggered):
-                yield Source(stimulus.name, targets, is_stimulus=True)
+                yield FlowSource(stimulus.name, targets, is_stimulus=True)
 
-    def _messages(self) -> Iterable[Source]:
+    def _messages(self) -> Iterable[FlowSource]:
         dataflow, processes = self.context.dataflow, self.system.processes
         for channel in () if self.problem else self.system.channels.values():
             if not any(channel.name in dataflow.by_name(name, writes) for name in processes):
                 targets = tuple(name for name in processes if channel.name in dataflow.by_name(name, reads))
                 if targets:
-                    yield Source(channel.name, targets, is_stimulus=False)
+                    yield FlowSource(channel.name, targets, is_stimulus=False)
 
     @cached_property
     def chains(self) -> tuple[ChainPath, ...]:

@@ -58,7 +58,7 @@ _MEANINGS = {
 
 
 @dataclass(frozen=True, slots=True)
-class _Node:
+class _Box:
     """The content of a box.
 
     Attributes
@@ -79,7 +79,7 @@ class _Band:
     """A core with its boxes."""
 
     header: str
-    nodes: tuple[_Node, ...]
+    nodes: tuple[_Box, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,13 +134,13 @@ def _node(
     analysis: Analysis | None,
     own_loads: Mapping[str, Fraction],
     chains: Sequence[ChainPath],
-) -> _Node:
+) -> _Box:
     priority, load = shown.placement(process.name).priority, own_loads.get(process.name)
     details = (
         *([] if priority is None else [f"priority {priority}"]),
         *([] if load is None else [f"load {_percent(load)}"]),
     )
-    return _Node(
+    return _Box(
         process.name,
         (shown.activation(process.name), ", ".join(details)),
         None if analysis is None else analysis[process.name].verdict,
@@ -193,10 +193,10 @@ def _of_cores(shown: SystemFlows, analysis: Analysis | None) -> _Content:
     return _Content(bands, wires, (LinkKind.DATA,) * len(wires), (*notes, *_problems(shown)))
 
 
-def _core_node(core: str, processes: Sequence[Process], between: Counter[tuple[str, str]]) -> _Node:
+def _core_node(core: str, processes: Sequence[Process], between: Counter[tuple[str, str]]) -> _Box:
     isrs = sum(isinstance(process, Isr) for process in processes)
     numbers = _counts((len(processes) - isrs, "task"), (isrs, "ISR"))
-    return _Node(core, (numbers, f"{counted(between[core, core], 'flow')} within"))
+    return _Box(core, (numbers, f"{counted(between[core, core], 'flow')} within"))
 
 
 def _counts(*numbers: tuple[int, str]) -> str:
@@ -268,7 +268,7 @@ def _frame(band: _Band, top: float, height: float, width: float) -> Markup:
     return tipped(band.header, frame, text_at(band.header, MARGIN + _INSET, top + 17, "header", room=width - 4 * MARGIN))
 
 
-def _box(node: _Node, layout: Layout) -> Markup:
+def _box(node: _Box, layout: Layout) -> Markup:
     """A box with its lines; ISRs have round ends."""
     box = layout.boxes[node.name]
     outline = rect_at("box", box.left, box.top, BOX, box.height, rx=16 if node.is_round else 3)

@@ -12,7 +12,7 @@ from amalthea_uros.analyze.results.processes import ProcessorResult, Requirement
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure
-from amalthea_uros.timing.demand.plausibility import unit_hint
+from amalthea_uros.timing.activation.load import unit_hint
 from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
 
 #: Reasons that are only consequences of other reasons end like this.

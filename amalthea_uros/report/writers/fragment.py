@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
-from amalthea_uros.report.basics.document import Block, Document, Line, Sentences, ShownFinding, Table
+from amalthea_uros.report.basics.document import Block, Line, ResultDocument, Sentences, ShownFinding, Table
 from amalthea_uros.report.basics.escape import visible
 
 _TABLE = '<table class="amuros" style="border-collapse:collapse">'
 _CELL = "padding:2px 12px 2px 0;vertical-align:top;min-width:4em"
 
 
-def html_of(document: Document) -> str:
+def html_of(document: ResultDocument) -> str:
     """What a terminal shows of a document."""
     return f'<div class="amuros">{"".join(_parts(document))}</div>'
 
 
-def _parts(document: Document) -> Iterator[str]:
+def _parts(document: ResultDocument) -> Iterator[str]:
     yield from map(_line, filter(None, [document.opening]))
     for section in document.sections:
         if not section.is_detail:

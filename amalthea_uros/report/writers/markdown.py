@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import IO
 
-from amalthea_uros.report.basics.document import Block, Document, Sentences, Table, table
+from amalthea_uros.report.basics.document import Block, ResultDocument, Sentences, Table, table
 from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.report.documents import document_of
 
@@ -30,7 +30,7 @@ def write(result: object, stream: IO[str]) -> None:
         stream.write(line + "\n")
 
 
-def lines(document: Document, level: int = 1, most_characters: int | None = None) -> Iterator[str]:
+def lines(document: ResultDocument, level: int = 1, most_characters: int | None = None) -> Iterator[str]:
     """The title, the outcome in bold, what it is about, and the sections; tables without columns in which there is nothing.
 
     Parameters

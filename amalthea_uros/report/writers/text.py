@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import IO
 
 from amalthea_uros.report.basics.display import is_brief
-from amalthea_uros.report.basics.document import Block, Document, Line, Listing, Sentences, ShownFinding, Table, Tone
+from amalthea_uros.report.basics.document import Block, Line, Listing, ResultDocument, Sentences, ShownFinding, Table, Tone
 from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.report.documents import document_of
 from amalthea_uros.report.writers.terminal import Terminal
@@ -26,7 +26,7 @@ def write(result: object, stream: IO[str]) -> None:
         terminal.line(document.closing)
 
 
-def write_document(document: Document, terminal: Terminal) -> None:
+def write_document(document: ResultDocument, terminal: Terminal) -> None:
     """Write the opening, the sections, and the outcome."""
     if document.opening:
         terminal.line(document.opening)

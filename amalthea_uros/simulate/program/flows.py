@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.executors.semantics.callbacks import taker
-from amalthea_uros.executors.semantics.losses import is_question, losses_text
-from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.executors.semantics.losses import is_question, losses_text, parts
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.network import BILLION, Direction, Losses, Purpose, Transmission, Wire
 from amalthea_uros.simulate.kernel import layout

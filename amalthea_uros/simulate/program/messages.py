@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.executors.semantics.callbacks import taker
-from amalthea_uros.executors.semantics.message_parts import parts
+from amalthea_uros.executors.semantics.losses import parts
 from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind

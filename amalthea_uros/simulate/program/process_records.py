@@ -9,18 +9,17 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.simulate.kernel import layout
-from amalthea_uros.simulate.program.body import process_code
+from amalthea_uros.simulate.program.body import Body, process_code
 from amalthea_uros.simulate.program.chains import ChainCompiler
-from amalthea_uros.simulate.program.decision_programs import decision_code
 from amalthea_uros.simulate.program.host_system import host_name
-from amalthea_uros.simulate.program.image import Image, ProgramHooks
+from amalthea_uros.simulate.program.image import Code, Image, ProgramHooks
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.program.scheduling import Dispatched, Dispatching
 from amalthea_uros.timing.blocking.critical_sections import protection_of
 from amalthea_uros.timing.jobs.executed import states_execution_time
 from amalthea_uros.timing.scheduling.allocation import standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, preemption
-from amalthea_uros.trace.table import EntityKind
+from amalthea_uros.trace.table import EntityKind, EventKind
 
 #: Places for what a sporadic server gets back.
 _PLANS = 64
@@ -247,3 +246,13 @@ class ProcessRecords:
 def _inner(item: Dispatched) -> int:
     """The order within a server that has a deadline itself."""
     return item.scheduled.rank[-1] if item.scheduled.rank else 0
+
+
+def decision_code(resources: Resources, scheduler: Scheduler, core: str) -> Code:
+    """The program of a decision of a scheduler; raises as `body.process_code`."""
+    body = Body(resources, None, core, ProgramHooks(), in_group=False)
+    body.activities(scheduler.overhead)
+    if resources.is_noted:
+        body.code.add(layout.NOTE, int(EventKind.SCHEDULE), resources.entities.number(EntityKind.SCHEDULER, scheduler.name))
+    body.code.add(layout.END)
+    return body.code

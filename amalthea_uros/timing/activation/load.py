@@ -16,6 +16,7 @@ from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import NOTHING, JobDemand, JobPaths, total
 from amalthea_uros.timing.demand.model import DemandModel
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.units import Frequency, frequency_text
 
 
 def activation_rates(system: System, activations: Activations) -> Mapping[str, Fraction]:
@@ -145,3 +146,16 @@ def _demands(
         with suppress(UnknownError):
             found.setdefault(core, {})[name] = demand_model.of_process(process, core)
     return found
+
+
+#: A load of ten cores is no mistake of a design.
+_ABSURD_LOAD = 10
+#: No controller that executes tasks is as slow: a clock below 1 kHz is one whose prefix is missing.
+_SLOWEST = 1000
+
+
+def unit_hint(load: Fraction | int, frequency: Frequency | None) -> str:
+    """A question about the unit of a clock with which a core has an absurd load; "" for any other core."""
+    if frequency is None or frequency >= _SLOWEST or load < _ABSURD_LOAD:
+        return ""
+    return f"its clock has {frequency_text(frequency)}: is that the unit, or kHz or MHz?"

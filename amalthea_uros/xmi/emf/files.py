@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from amalthea_uros._internal import files
-from amalthea_uros._internal.files import FileEncodingError, FileError, FileTooLargeError
+from amalthea_uros._internal.files import FileError, FileFlaw
 from amalthea_uros._internal.limits import ADVICE, MODEL_ELEMENTS, MODEL_SIZE
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -83,7 +83,7 @@ def write_texts(contents: Mapping[Path, FileText], removed: Collection[Path] = (
 
 def not_readable(error: FileError) -> ReadError:
     """A failure to read a file as the exception of this library."""
-    rule = {FileEncodingError: "XMI002", FileTooLargeError: "XMI004"}.get(type(error), "XMI001")
+    rule = {FileFlaw.ENCODING: "XMI002", FileFlaw.SIZE: "XMI004"}.get(error.flaw, "XMI001")
     return ReadError([Finding(rule, Severity.ERROR, error.reason, Location(error.path), error.advice)])
 
 
@@ -114,7 +114,8 @@ def _read_text(path: Path, max_size: int) -> FileText:
         text = files.decode(data, encoding)
     except (UnicodeError, LookupError) as error:
         advice = "AMALTHEA models are XML files in UTF-8, plain or zipped."
-        raise FileEncodingError(path, f"not XML: the content is not valid {encoding} text ({error})", advice) from None
+        reason = f"not XML: the content is not valid {encoding} text ({error})"
+        raise FileError(path, reason, advice, FileFlaw.ENCODING) from None
     if not text or text.isspace():
         raise FileError(path, "the file is empty", "Check that it was written completely.")
     _check_elements(path, text, MODEL_ELEMENTS * max(MODEL_SIZE, max_size) // MODEL_SIZE)
@@ -125,7 +126,7 @@ def _check_elements(path: Path, text: str, limit: int) -> None:
     """Refuse a model with too many elements before any object is made: a hundred kilobytes of ZIP may hold ten million."""
     # Comments count too, since they are kept.
     if text.count("<") - text.count("</") > limit:
-        raise FileTooLargeError(path, f"the file has more than {limit:,} elements", ADVICE)
+        raise FileError(path, f"the file has more than {limit:,} elements", ADVICE, FileFlaw.SIZE)
 
 
 def _declared_encoding(data: bytes) -> str:

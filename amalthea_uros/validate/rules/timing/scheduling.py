@@ -24,7 +24,7 @@ from amalthea_uros.metamodel.classes import (
     TaskScheduler,
 )
 from amalthea_uros.metamodel.magnitudes import bits
-from amalthea_uros.timing.demand.plausibility import unit_hint
+from amalthea_uros.timing.activation.load import unit_hint
 from amalthea_uros.timing.scheduling.allocation import is_by_priority, sharing_a_priority
 from amalthea_uros.units import data_size_text, number_text
 from amalthea_uros.validate.context import Context
