@@ -12,11 +12,11 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
-from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated, session_users
+from amalthea_uros.source.loops import ROUND_TRIPS, SENDS, is_only_at_creation, is_repeated, session_users
 from amalthea_uros.source.scope import literal
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
 from amalthea_uros.source.syntax import descendants, text_of
-from amalthea_uros.source.walk import CodeWalk, FunctionCall
+from amalthea_uros.source.walk import ENTRIES, CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:
@@ -34,6 +34,11 @@ WITH_HANDLES = (
     CodeEntityKind.ACTION_SERVER,
     CodeEntityKind.ACTION_CLIENT,
 )
+#: Functions of rcl that wait for something or read it, without an executor -> the position of that.
+_TAKEN = {
+    **dict.fromkeys(("rcl_take", "rcl_take_request", "rcl_take_response"), 0),
+    **{f"rcl_wait_set_add_{kind}": 1 for kind in ("subscription", "timer", "service", "client", "guard_condition")},
+}
 #: Defaults of micro-ROS/rmw_microxrcedds rmw_microxrcedds_c/CMakeLists.txt; each timer needs a guard condition.
 _POOLS = {
     "RMW_UXRCE_MAX_NODES": (4, (CodeEntityKind.NODE,)),
@@ -49,7 +54,8 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """The findings about the application itself."""
     yield from _unchecked(walk.calls)
     yield from _pools(facts)
-    yield from _never_called(facts)
+    yield from _never_called(facts, walk.calls)
+    yield from _never_reached(facts, walk)
     for executor in facts.executors.values():
         yield from _handles(executor, facts)
         yield from _waiting(executor)
@@ -92,12 +98,24 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
             yield Finding("IMP007", severity, message, used[size].place, advice)
 
 
-def _never_called(facts: CodeFacts) -> Iterator[Finding]:
-    added = {handle.entity for executor in facts.executors.values() for handle in executor.handles}
+def _never_called(facts: CodeFacts, calls: list[FunctionCall]) -> Iterator[Finding]:
+    handles = [handle for executor in facts.executors.values() for handle in executor.handles]
+    added = {handle.entity for handle in handles}
+    open_kinds = {each.kind for each in handles if each.kind in WITH_HANDLES and not facts.entities[each.entity].is_created}
+    places = [(call.argument(_TAKEN[call.name]), call) for call in calls if call.name in _TAKEN]
+    taken = {given.key for given, _ in places if given is not None}
     for entity in facts.entities.values():
-        if entity.kind in WITH_HANDLES and entity.key not in added:
-            message = f"the {entity.kind} '{entity.variable}' is never added to an executor, so its callback never runs"
-            yield Finding("IMP017", Severity.WARNING, message, entity.place, "Add it to an executor, or remove it.")
+        if entity.kind not in WITH_HANDLES or entity.key in added:
+            continue
+        message = f"the {entity.kind} '{entity.variable}' is never added to an executor, so its callback never runs"
+        advice = "Add it to an executor, or remove it."
+        if entity.key in taken:
+            message = f"the {entity.kind} '{entity.variable}' is read without an executor, which the description does not have"
+            advice = "Add it to an executor, or add what it does to the description by hand."
+        elif entity.kind in open_kinds:
+            message = f"it is not understood where the {entity.kind} '{entity.variable}' is added to an executor"
+            advice = "Complete it in the description."
+        yield Finding("IMP017", Severity.WARNING, message, entity.place, advice)
     for executor in facts.executors.values():
         if not executor.spins:
             message = f"the executor '{executor.variable}' never spins in these files"
@@ -113,6 +131,17 @@ def _never_called(facts: CodeFacts) -> Iterator[Finding]:
                 message = f"the {handle.kind} that is added here is not created by a function that is understood"
                 advice = "Complete it in the description, and add the others that a loop adds here."
                 yield Finding("IMP017", Severity.WARNING, message, handle.place, advice)
+
+
+def _never_reached(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    """Functions that create something, and that nothing leads to from where the program begins, if that is known."""
+    begins = [each for name in ENTRIES for each in walk.program.functions.get(name, ()) if not each.owner]
+    known = {*facts.threads, *facts.publishes, *(each.scope for each in begins)}
+    for call in walk.calls:
+        if begins and call.name in CREATIONS and call.root is not None and call.root.scope not in known:
+            known.add(call.root.scope)
+            message = f"nothing in these files calls '{call.root.name}', which creates entities; it is taken as called"
+            yield Finding("IMP015", Severity.INFO, message, call.place, "Remove them from the description if it is not called.")
 
 
 def _handles(executor: CodeExecutor, facts: CodeFacts) -> Iterator[Finding]:
@@ -192,12 +221,13 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
 
 def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     described = _in_loops(facts)
-    spins = [call for call in walk.calls if call.name in SPINS and is_repeated(call)]
+    users = [call for call in walk.calls if call.name in (*SPINS, *SENDS) and is_repeated(call)]
     for call in walk.calls:
-        if any(call.root is spin.root and call.excludes(spin) for spin in spins):
-            # Of another state than the one that the description has.
+        if call.name not in ROUND_TRIPS or not is_repeated(call) or call.place in described:
             continue
-        if call.name in ROUND_TRIPS and is_repeated(call) and call.place not in described:
+        # Of another state than the one that the description has, or of its beginning.
+        own = [each for each in users if each.root is call.root]
+        if not any(call.excludes(each) or is_only_at_creation(call, each, walk.calls) for each in own):
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
@@ -254,6 +284,9 @@ def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
         if call.place in described:
             message = f"'{entity.variable}' publishes in a loop, outside of callbacks: how long that takes is unknown"
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
+        elif call.place in published and call.loops and any(call.root.scope == scope for scope in facts.publishes if call.root):
+            message = f"'{entity.variable}' publishes in a loop of unknown length, of which the description has one message"
+            yield Finding("IMP013", Severity.WARNING, message, call.place, "Add the other messages to 'publishes' by hand.")
         elif call.place not in published:
             message = f"'{entity.variable}' publishes outside of callbacks, which the description does not have"
             yield Finding(

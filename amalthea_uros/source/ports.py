@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -54,6 +55,8 @@ FORMS: Mapping[str, _ThreadForm] = {
     # What it is given comes with osThreadCreate.
     "osThreadDef": _ThreadForm(1, 5, 0, 4, 2, rtos="freertos"),
     "K_THREAD_DEFINE": _ThreadForm(2, 3, 0, 1, 6, rtos="zephyr"),
+    # Of the firmware of the Crazyflie.
+    "STATIC_MEM_TASK_CREATE": _ThreadForm(1, 3, 2, priority=4, rtos="freertos"),
     "k_thread_create": _ThreadForm(3, 4, 0, 2, 7, rtos="zephyr"),
     "pthread_create": _ThreadForm(2, 3, 0),
 }
@@ -175,6 +178,9 @@ def _key(call: FunctionCall, port: str, board: str) -> str | None:
         line = given.name if given is not None else "Serial"
         return "usb_cdc" if line == "SerialUSB" else "serial" if line != "Serial" else serial_of_board(board)
     names = " ".join(argument.text for argument in call.arguments).lower()
+    if re.search(r"\bh?(fd)?can\d*\b", names) is not None:
+        # How the messages are cut to frames is up to the application.
+        return None
     is_framed = given is not None and given.resolved.text in ("true", "1")
     if is_framed or any(word in names for word in ("serial", "uart", "usb", "cdc")):
         if port == "pico-sdk":

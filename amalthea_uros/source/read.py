@@ -90,6 +90,10 @@ def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
                 facts.findings += _of_each_object(call, entity, walk.program)
             if entity is not None and entity.key not in facts.entities:
                 facts.entities[entity.key] = entity
+            elif entity is not None and _differs(entity, facts.entities[entity.key]):
+                message = f"'{entity.variable}' is created again as something else; the description has the first one"
+                advice = "Add the other ones to the description by hand."
+                facts.findings.append(Finding("IMP003", Severity.WARNING, message, call.place, advice))
     # All executors first: functions that are called later can come earlier in the files.
     _act(facts, walk, {"rclc_executor_init"})
     _act(facts, walk, ACTIONS.keys() - {"rclc_executor_init"})
@@ -100,6 +104,13 @@ def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
                 facts.entities[handle.entity] = CodeEntity(
                     kind=handle.kind, key=handle.entity, variable=variable, place=handle.place, is_created=False
                 )
+
+
+def _differs(entity: CodeEntity, other: CodeEntity) -> bool:
+    """Whether two entities of one variable have another name, type, period or callback, so that they are not one created twice."""
+    pairs = ((entity.name, other.name), (entity.type, other.type), (entity.period, other.period))
+    callbacks = [each.callback.name if each.callback is not None else "" for each in (entity, other)]
+    return any(None not in pair and pair[0] != pair[1] for pair in pairs) or callbacks[0] != callbacks[1]
 
 
 def _of_each_object(call: FunctionCall, entity: CodeEntity, program: CodeProgram) -> list[Finding]:

@@ -49,7 +49,7 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
         check_order(executor, context.notes)
         if executor.loop is not None and executor.loop.only_sends and not own:
             add_sending_thread(context, executor)
-        elif not own and (executor.loop is not None or len(executors) > 1):
+        elif not own and not executor.states("order") and (executor.loop is not None or len(executors) > 1):
             advice = f"Set 'runs_in: {executor.name}' at callbacks or nodes, or remove the executor."
             context.notes.error("APP003", f"the executor {executor.name!r} serves no callback", executor.location(), advice)
         elif executor.loop is not None:
