@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tree_sitter import Node
 
 _MILLISECOND = 10**9
+_VERBS = {"rcl_publish": "publishes", "rcl_send_request": "sends requests"}
 _SECOND = 10**12
 #: What an executor needs a handle for, besides servers of parameters and lifecycles.
 WITH_HANDLES = (
@@ -105,7 +106,7 @@ def _never_called(facts: CodeFacts, calls: list[FunctionCall]) -> Iterator[Findi
     places = [(call.argument(_TAKEN[call.name]), call) for call in calls if call.name in _TAKEN]
     taken = {given.key for given, _ in places if given is not None}
     for entity in facts.entities.values():
-        if entity.kind not in WITH_HANDLES or entity.key in added:
+        if entity.kind not in (*WITH_HANDLES, CodeEntityKind.PARAMETER_SERVER) or entity.key in added:
             continue
         message = f"the {entity.kind} '{entity.variable}' is never added to an executor, so its callback never runs"
         advice = "Add it to an executor, or remove it."
@@ -225,9 +226,12 @@ def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     for call in walk.calls:
         if call.name not in ROUND_TRIPS or not is_repeated(call) or call.place in described:
             continue
-        # Of another state than the one that the description has, or of its beginning.
+        # Of another state than the one that the description has, or from before its loop.
         own = [each for each in users if each.root is call.root]
-        if not any(call.excludes(each) or is_only_at_creation(call, each, walk.calls) for each in own):
+        inside = [each for each in own if call.loops[: len(each.loops)] == each.loops]
+        if not own or (
+            inside and not any(call.excludes(each) or is_only_at_creation(call, each, walk.calls) for each in inside)
+        ):
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
@@ -277,22 +281,24 @@ def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     reported, described = set(), _in_loops(facts)
     for call in walk.calls:
         given = call.argument(0)
-        entity = facts.entities.get(given.key) if call.name == "rcl_publish" and given is not None else None
+        entity = facts.entities.get(given.key) if call.name in SENDS and given is not None else None
         if entity is None or call.place in reported:
             continue
         reported.add(call.place)
         if call.place in described:
-            message = f"'{entity.variable}' publishes in a loop, outside of callbacks: how long that takes is unknown"
+            message = f"'{entity.variable}' {_VERBS[call.name]} in a loop, outside of callbacks: how long that takes is unknown"
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
         elif call.place in published and call.loops and any(call.root.scope == scope for scope in facts.publishes if call.root):
-            message = f"'{entity.variable}' publishes in a loop of unknown length, of which the description has one message"
+            message = (
+                f"'{entity.variable}' {_VERBS[call.name]} in a loop of unknown length, of which the description has one message"
+            )
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Add the other messages to 'publishes' by hand.")
         elif call.place not in published:
-            message = f"'{entity.variable}' publishes outside of callbacks, which the description does not have"
+            message = f"'{entity.variable}' {_VERBS[call.name]} outside of callbacks, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Describe it as a timer, or publish in a timer callback."
             )
-        elif entity.reliability == RELIABLE:
+        elif entity.reliability == RELIABLE and entity.kind is CodeEntityKind.PUBLISHER:
             message = (
                 f"publishing with '{entity.variable}' is reliable: the callback waits for the acknowledgement of the agent"
             )

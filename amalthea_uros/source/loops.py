@@ -58,9 +58,19 @@ def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
             continue
         items = tuple(_items(facts, replace(call, loops=_loop_of_thread(call, calls)), calls))
         known |= {item.place for item in items}
+        if _add_to_spins(facts, items):
+            continue
         thread = facts.threads.get(call.root.scope)
         name = thread.name if thread is not None else call.root.name
         facts.senders.append(CodeSender(name=name, thread=thread, items=items, place=call.place))
+
+
+def _add_to_spins(facts: CodeFacts, items: tuple[CodeLoopItem, ...]) -> bool:
+    """Whether executors spin in a loop that sends, which then is theirs, with the loop in which they spin in it."""
+    spinning = [facts.executors[item.of] for item in items if item.kind is CodeLoopKind.SPIN]
+    for executor in spinning:
+        executor.spins[0] = replace(executor.spins[0], items=items)
+    return bool(spinning)
 
 
 def _loop_of_thread(call: FunctionCall, calls: Sequence[FunctionCall]) -> tuple[Mark, ...]:

@@ -51,6 +51,10 @@ FORMS: Mapping[str, _ThreadForm] = {
     "xTaskCreate": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
     "xTaskCreateStatic": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
     "xTaskCreatePinnedToCore": _ThreadForm(0, 3, 1, 2, 4, 6, rtos="freertos"),
+    "xTaskCreateStaticPinnedToCore": _ThreadForm(0, 3, 1, 2, 4, 7, rtos="freertos"),
+    # Of Arduino for ESP32, and of FreeRTOS for several cores, of which it takes a set.
+    "xTaskCreateUniversal": _ThreadForm(0, 3, 1, 2, 4, 6, rtos="freertos"),
+    "xTaskCreateAffinitySet": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
     "osThreadNew": _ThreadForm(0, 1, attributes=2, rtos="freertos"),
     # What it is given comes with osThreadCreate.
     "osThreadDef": _ThreadForm(1, 5, 0, 4, 2, rtos="freertos"),
@@ -60,6 +64,10 @@ FORMS: Mapping[str, _ThreadForm] = {
     "k_thread_create": _ThreadForm(3, 4, 0, 2, 7, rtos="zephyr"),
     "pthread_create": _ThreadForm(2, 3, 0),
 }
+
+
+#: Those that count stacks in words, except in ESP-IDF.
+_IN_WORDS = ("xTaskCreate", "xTaskCreateStatic", "xTaskCreateAffinitySet", "osThreadDef")
 
 
 def thread_of(call: FunctionCall, walk: CodeWalk, unit: int | None) -> Thread | None:
@@ -79,7 +87,7 @@ def thread_of(call: FunctionCall, walk: CodeWalk, unit: int | None) -> Thread | 
         attributes.get(key) or (call.argument(index) if index is not None else None)
         for key, index in (("name", form.name), ("stack_size", form.stack), ("priority", form.priority), ("core", form.core))
     )
-    factor = unit if call.name in ("xTaskCreate", "xTaskCreateStatic", "osThreadDef") else 1
+    factor = unit if call.name in _IN_WORDS else 1
     size = stack.number if stack is not None else None
     return Thread(
         name=(

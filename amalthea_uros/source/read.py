@@ -28,7 +28,7 @@ _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, *LOCKS, "Serial.begin"})
 #: What FreeRTOS.h and task.h define alike for all controllers.
 _CONSTANTS = {"tskIDLE_PRIORITY": "0"}
 #: rclc_parameter/include/rclc_parameter/rclc_parameter.h of ros2/rclc; by the distribution.
-_SERVER_HANDLES = "RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES"
+_SERVER_HANDLES = ("RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES", "RCLC_PARAMETER_EXECUTOR_HANDLES_NUMBER")
 #: A place in an array that is not constant.
 _OPEN = re.compile(r"\[(?!\d+\])[^\]]*\]")
 _OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
@@ -48,8 +48,10 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     """
     program = read_program(sources.code)
     facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
-    if not program.macros[_SERVER_HANDLES]:
-        program.macros[_SERVER_HANDLES].add(str(parameter_services(build.ros.value if build.ros is not None else None)))
+    for name in _SERVER_HANDLES:
+        program.macros[name] = program.macros[name] or {
+            str(parameter_services(build.ros.value if build.ros is not None else None))
+        }
     for name, stated in (_CONSTANTS | build.macros).items():
         program.macros[name].add(stated)
     walk = CodeWalk(program, _NAMES, {name: (form.entry, form.argument) for name, form in FORMS.items()})

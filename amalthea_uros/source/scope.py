@@ -373,7 +373,11 @@ class Expression:
             return f"{parts[0]}{parts[1]}" if is_sum and len(parts) == 2 and None not in parts else None
         name, arguments = called(self.node)
         function = self.node.child_by_field_name("function")
-        if name.endswith(".c_str") and function is not None and (text := function.child_by_field_name("argument")) is not None:
+        if (
+            name.endswith((".c_str", ".data"))
+            and function is not None
+            and (text := function.child_by_field_name("argument")) is not None
+        ):
             return self.at(text).string
         return self.at(arguments[0])._as_text() if name.rpartition("::")[2] in _TEXTS and len(arguments) == 1 else None
 

@@ -31,8 +31,8 @@ def in_any_turn(items):
 
 
 def items_of(loop):
-    """The items of a loop as it is written, in one form for all ways to write it."""
-    items = [{key: value} for key, value in loop.items()] if isinstance(loop, dict) else loop
+    """The items of a loop as it is written, in one form for all ways to write it; none of a gap."""
+    items = [{key: value} for key, value in loop.items()] if isinstance(loop, dict) else loop or ()
     return [" ".join(f"{key} {value}" for key, value in each.items()) for each in items]
 
 
