@@ -43,7 +43,7 @@ LINES = {
     "report": 8645,
     "services": 2614,
     "simulate": 8629,
-    "source": 3420,
+    "source": 3440,
     "spec": 2957,
     "timing": 5638,
     "trace": 5064,

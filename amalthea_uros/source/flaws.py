@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros._internal.ports import known_ports
+from amalthea_uros._internal.ports import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, known_ports, parameter_services
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
-from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
+from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind
 from amalthea_uros.source.loops import ROUND_TRIPS, SENDS, is_only_at_creation, is_repeated, session_users
 from amalthea_uros.source.scope import literal
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
@@ -79,7 +79,9 @@ def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
 
 def _pools(facts: CodeFacts) -> Iterator[Finding]:
     for name, (default, kinds) in _POOLS.items():
-        used = [entity for entity in facts.entities.values() if entity.kind in kinds]
+        own = [entity for entity in facts.entities.values() if entity.kind in kinds]
+        implied = [(each, _created_by(each, facts)) for each in facts.entities.values()]
+        used = own + [each for each, created in implied for _ in range(sum(created.get(kind, 0) for kind in kinds))]
         option = facts.options.get(name)
         port = known_ports().get(facts.port)
         by_default, sizes = (port.pools_of or "by default", port.pools) if port is not None else ("by default", {})
@@ -89,9 +91,11 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
             stated = by_default if name in sizes else "by default"
             if option is not None:
                 stated = f"in {option.place.path}" if option.place is not None else "for this board"
-            message = f"{counted(len(used), kinds[0].value)} need {name}={len(used)}, which is {size} {stated}"
+            need = f"need {name}={len(used)}, which is {size} {stated}"
+            included = ", those of actions and servers included," if len(used) > len(own) else ""
+            message = f"{counted(len(used), kinds[0].value)}{included} {need}"
             if len(kinds) > 1:
-                message = f"the timers and guard conditions need {name}={len(used)}, which is {size} {stated}"
+                message = f"the timers and guard conditions {need}"
             advice = "Set it in colcon.meta and rebuild libmicroros from scratch."
             if facts.port == "arduino" and option is None:
                 advice = "Take a board whose library has more, such as ESP32 or Teensy 4 with 10, or build the library anew."
@@ -99,8 +103,28 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
             yield Finding("IMP007", severity, message, used[size].place, advice)
 
 
+def _created_by(entity: CodeEntity, facts: CodeFacts) -> Mapping[CodeEntityKind, int]:
+    """How many entities of each kind an action, or a server of parameters or of a lifecycle, creates in the middleware."""
+    match entity.kind:
+        case CodeEntityKind.ACTION_SERVER:
+            return {CodeEntityKind.SERVICE: ACTION_SERVICES, CodeEntityKind.PUBLISHER: ACTION_TOPICS, CodeEntityKind.TIMER: 1}
+        case CodeEntityKind.ACTION_CLIENT:
+            return {CodeEntityKind.CLIENT: ACTION_SERVICES, CodeEntityKind.SUBSCRIPTION: ACTION_TOPICS}
+        case CodeEntityKind.LIFECYCLE:
+            return {CodeEntityKind.SERVICE: LIFECYCLE_SERVICES, CodeEntityKind.PUBLISHER: 1}
+        case CodeEntityKind.PARAMETER_SERVER if any(each.entity == entity.key for each in _every_handle(facts)):
+            services = parameter_services(facts.ros.value if facts.ros is not None else None)
+            changes = dict(entity.options).get("notify_changed_over_dds", True)
+            return {CodeEntityKind.SERVICE: services, CodeEntityKind.PUBLISHER: int(changes)}
+    return {}
+
+
+def _every_handle(facts: CodeFacts) -> list[CodeHandle]:
+    return [handle for executor in facts.executors.values() for handle in executor.handles]
+
+
 def _never_called(facts: CodeFacts, calls: list[FunctionCall]) -> Iterator[Finding]:
-    handles = [handle for executor in facts.executors.values() for handle in executor.handles]
+    handles = _every_handle(facts)
     added = {handle.entity for handle in handles}
     open_kinds = {each.kind for each in handles if each.kind in WITH_HANDLES and not facts.entities[each.entity].is_created}
     places = [(call.argument(_TAKEN[call.name]), call) for call in calls if call.name in _TAKEN]
