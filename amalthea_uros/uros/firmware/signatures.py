@@ -8,8 +8,8 @@ from amalthea_uros.spec.application import Publisher, Subscription
 from amalthea_uros.uros.firmware.entities import CodeHandler, CodeMessage
 
 #: What a callback about a goal is given first: the goal, and whether it is accepted.
-_OF_GOALS = {"action_server": (("rclc_action_goal_handle_t *", "goal"),)}
-_OF_GOALS["action_client"] = (*_OF_GOALS["action_server"], ("bool", "is_accepted"))
+_GOAL = ("rclc_action_goal_handle_t *", "goal")
+_OF_GOALS = {"action_server": [_GOAL], "action_client": [_GOAL, ("bool", "is_accepted")]}
 
 
 def parameters(handler: CodeHandler) -> str:
