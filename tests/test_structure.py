@@ -43,7 +43,7 @@ LINES = {
     "report": 8646,
     "services": 2623,
     "simulate": 8641,
-    "source": 3275,
+    "source": 3440,
     "spec": 2965,
     "timing": 5639,
     "trace": 5073,

@@ -13,6 +13,12 @@ DISTRIBUTIONS = ("foxy", "galactic", "humble", "iron", "jazzy", "kilted", "rolli
 #: Those whose parameter server has five services and handles: `RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES` and parameter_server.c of
 #: ros2/rclc rclc_parameter, on the branch of each distribution.
 _WITH_FIVE = ("foxy", "galactic", "humble")
+#: An action server has services for goals, results and cancelling, and publishes feedback and its status; an action client has their
+#: counterparts (ros2/rcl rcl_action/src/rcl_action/action_server.c, action_client.c).
+ACTION_SERVICES, ACTION_TOPICS = 3, 2
+#: A lifecycle node with its communication interface creates all five services, however many are added to the executor, and a publisher
+#: (ros2/rcl rcl_lifecycle/src/com_interface.c).
+LIFECYCLE_SERVICES = 5
 
 
 def parameter_services(distribution: str | None) -> int:

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 #: Classes of C++ that are arrays of a fixed length: their last argument.
 _TEMPLATES = ("array",)
+#: Functions and macros that count the elements of an array; those of Zephyr the bytes of a stack.
+_COUNTS = ("std::size", "size", "ARRAY_SIZE", "RCL_ARRAY_SIZE", "LENGTH", "K_THREAD_STACK_SIZEOF", "K_KERNEL_STACK_SIZEOF")
 #: Types of the elements of stacks and their sizes in bytes, on controllers with 32 bits.
 WIDTHS = {"uint8_t": 1, "char": 1, "uint32_t": 4, "StackType_t": 4, "uint64_t": 8}
 
@@ -74,7 +76,7 @@ def counted_array(node: Node) -> Node | None:
         if function is not None and function.type == "field_expression" and not given:
             field = function.child_by_field_name("field")
             return function.child_by_field_name("argument") if field is not None and text_of(field) == "size" else None
-        is_count = function is not None and text_of(function) in ("std::size", "size", "ARRAY_SIZE", "RCL_ARRAY_SIZE", "LENGTH")
+        is_count = function is not None and text_of(function) in _COUNTS
         return given[0] if is_count and len(given) == 1 else None
     left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
     whole, first = (sized_operand(each) if each is not None else None for each in (left, right))

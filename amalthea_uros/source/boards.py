@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-#: Names of PlatformIO -> platforms.
+#: Names of PlatformIO, or of controllers in ESP-IDF -> platforms.
 _PLATFORMS = (
     (r"teensy4[01]", "teensy41"),
-    (r"esp32dev|esp32doit\S*|nodemcu-32s|lolin32|esp-wrover-kit", "esp32"),
+    (r"esp32|esp32dev|esp32doit\S*|nodemcu-32s|lolin32|esp-wrover-kit", "esp32"),
     (r"esp32-?s3\S*", "esp32-s3"),
     (r"pico|rpipico", "rp2040"),
     (r"nucleo_(f446re|f746zg|f767zi|h743zi)", r"nucleo-\1"),
@@ -45,6 +45,7 @@ _FULL = {
     "RMW_UXRCE_MAX_SUBSCRIPTIONS": 5,
     "RMW_UXRCE_MAX_SERVICES": 1,
     "RMW_UXRCE_MAX_CLIENTS": 1,
+    "RMW_UXRCE_MAX_HISTORY": 4,
 }
 #: Boards with the smallest sizes; of PlatformIO as extra_script.py of micro-ROS/micro_ros_platformio lists them.
 _SMALLEST = {"platformio": r"due|zero|nanorp2040connect", "arduino": r"zero|nanorp2040connect|mkr\S*|nano_33_iot"}

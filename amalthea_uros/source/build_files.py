@@ -60,9 +60,11 @@ def build_facts(files: Iterable[SourceFile]) -> BuildFacts:
     return facts
 
 
-_SETTING = re.compile(r"\s*([\w.]+)\s*=\s*(.*?)\s*(?:[;#].*)?$")
+_SETTING = re.compile(r"\s*([\w.]+)\s*=\s*(.*?)\s*(?:\s[;#].*)?$")
 _REFERENCE = re.compile(r"\$\{([\w:-]+)\.(\w+)\}")
 _SECTION = re.compile(r"\s*\[(.*)\]")
+#: Sections that extend each other.
+_MAX_DEPTH = 10
 
 
 def _settings(file: SourceFile, section: str) -> Iterator[tuple[str, Stated]]:
@@ -97,7 +99,7 @@ def _platformio(facts: BuildFacts, file: SourceFile) -> None:
     general, project = dict(_settings(file, "env")), dict(_settings(file, "platformio"))
     if (default := project.get("default_envs")) is not None:
         names = [name for name in names if name.removeprefix("env:") in re.split(r"[,\s]+", default.value)] or names
-    every = [_interpolated(file, general | dict(_settings(file, name))) for name in names] or [general]
+    every = [_interpolated(file, general | _extended(file, name)) for name in names] or [general]
     common = {
         key: stated for key, stated in every[0].items() if len({each[key].value if key in each else "" for each in every}) == 1
     }
@@ -118,6 +120,16 @@ def _platformio(facts: BuildFacts, file: SourceFile) -> None:
     flags = common.get("build_flags")
     if flags is not None and (usb := re.search(r"ARDUINO_USB_CDC_ON_BOOT=([01])", flags.value)) is not None:
         facts.transport = facts.transport or Stated("usb_cdc" if usb[1] == "1" else "serial", flags.place)
+
+
+def _extended(file: SourceFile, section: str, depth: int = 0) -> dict[str, Stated]:
+    """The settings of a section, with those of the sections that it extends, of which the last one counts."""
+    own = dict(_settings(file, section))
+    around = own["extends"].value if "extends" in own and depth < _MAX_DEPTH else ""
+    inherited: dict[str, Stated] = {}
+    for name in filter(None, re.split(r"[,\s]+", around)):
+        inherited |= _extended(file, name, depth + 1)
+    return inherited | own
 
 
 def _interpolated(file: SourceFile, settings: Mapping[str, Stated]) -> dict[str, Stated]:
@@ -163,6 +175,7 @@ def _espidf(facts: BuildFacts, settings: Mapping[str, Stated]) -> None:
     if micro_ros:
         facts.port = Stated("espidf", micro_ros[0].place)
     facts.ticks = _number(settings.get("CONFIG_FREERTOS_HZ")) or facts.ticks
+    facts.board = settings.get("CONFIG_IDF_TARGET") or facts.board
     for name, stated in settings.items():
         if re.fullmatch(r"CONFIG_ESP\w*_DEFAULT_CPU_FREQ_MHZ", name) and (number := _number(stated)) is not None:
             facts.clock = Stated(f"{number.value}000000", stated.place)

@@ -391,13 +391,13 @@ def _target(entity: CodeEntity, names: CodeNames) -> str:
 
 def _servers(node: CodeEntity, own: list[CodeEntity], facts: CodeFacts, names: CodeNames) -> Iterator[str]:
     for entity in own:
-        if entity.kind is CodeEntityKind.PARAMETER_SERVER:
+        if entity.kind is CodeEntityKind.PARAMETER_SERVER and entity.key in names.handle_by_entity:
             stated = dict(entity.options)
             yield f"parameter_server:{_at(entity.place)}"
             yield f"  rate: {GAP} # of requests"
             yield f"  execution_time: {GAP}"
-            executor = names.handle_by_entity[entity.key][1] if entity.key in names.handle_by_entity else None
-            if executor is not None and executor != next(iter(names.executors.values())):
+            executor = names.handle_by_entity[entity.key][1]
+            if executor != next(iter(names.executors.values())):
                 yield f"  runs_in: {quoted(executor)}"
             for key, option in (("events", "notify_changed_over_dds"), ("low_memory", "low_mem_mode")):
                 if option in stated:

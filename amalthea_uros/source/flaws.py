@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros._internal.ports import known_ports
+from amalthea_uros._internal.ports import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, known_ports, parameter_services
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
-from amalthea_uros.source.facts import CodeEntityKind, CodeExecutor, CodeFacts, SpinKind
-from amalthea_uros.source.loops import ROUND_TRIPS, is_repeated, session_users
+from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind
+from amalthea_uros.source.loops import ROUND_TRIPS, SENDS, is_only_at_creation, is_repeated, session_users
 from amalthea_uros.source.scope import literal
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
 from amalthea_uros.source.syntax import descendants, text_of
-from amalthea_uros.source.walk import CodeWalk, FunctionCall
+from amalthea_uros.source.walk import ENTRIES, CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
 _MILLISECOND = 10**9
+_VERBS = {"rcl_publish": "publishes", "rcl_send_request": "sends requests"}
 _SECOND = 10**12
 #: What an executor needs a handle for, besides servers of parameters and lifecycles.
 WITH_HANDLES = (
@@ -34,6 +35,11 @@ WITH_HANDLES = (
     CodeEntityKind.ACTION_SERVER,
     CodeEntityKind.ACTION_CLIENT,
 )
+#: Functions of rcl that wait for something or read it, without an executor -> the position of that.
+_TAKEN = {
+    **dict.fromkeys(("rcl_take", "rcl_take_request", "rcl_take_response"), 0),
+    **{f"rcl_wait_set_add_{kind}": 1 for kind in ("subscription", "timer", "service", "client", "guard_condition")},
+}
 #: Defaults of micro-ROS/rmw_microxrcedds rmw_microxrcedds_c/CMakeLists.txt; each timer needs a guard condition.
 _POOLS = {
     "RMW_UXRCE_MAX_NODES": (4, (CodeEntityKind.NODE,)),
@@ -49,7 +55,8 @@ def flaws(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     """The findings about the application itself."""
     yield from _unchecked(walk.calls)
     yield from _pools(facts)
-    yield from _never_called(facts)
+    yield from _never_called(facts, walk.calls)
+    yield from _never_reached(facts, walk)
     for executor in facts.executors.values():
         yield from _handles(executor, facts)
         yield from _waiting(executor)
@@ -72,7 +79,9 @@ def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
 
 def _pools(facts: CodeFacts) -> Iterator[Finding]:
     for name, (default, kinds) in _POOLS.items():
-        used = [entity for entity in facts.entities.values() if entity.kind in kinds]
+        own = [entity for entity in facts.entities.values() if entity.kind in kinds]
+        implied = [(each, _created_by(each, facts)) for each in facts.entities.values()]
+        used = own + [each for each, created in implied for _ in range(sum(created.get(kind, 0) for kind in kinds))]
         option = facts.options.get(name)
         port = known_ports().get(facts.port)
         by_default, sizes = (port.pools_of or "by default", port.pools) if port is not None else ("by default", {})
@@ -82,9 +91,11 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
             stated = by_default if name in sizes else "by default"
             if option is not None:
                 stated = f"in {option.place.path}" if option.place is not None else "for this board"
-            message = f"{counted(len(used), kinds[0].value)} need {name}={len(used)}, which is {size} {stated}"
+            need = f"need {name}={len(used)}, which is {size} {stated}"
+            included = ", those of actions and servers included," if len(used) > len(own) else ""
+            message = f"{counted(len(used), kinds[0].value)}{included} {need}"
             if len(kinds) > 1:
-                message = f"the timers and guard conditions need {name}={len(used)}, which is {size} {stated}"
+                message = f"the timers and guard conditions {need}"
             advice = "Set it in colcon.meta and rebuild libmicroros from scratch."
             if facts.port == "arduino" and option is None:
                 advice = "Take a board whose library has more, such as ESP32 or Teensy 4 with 10, or build the library anew."
@@ -92,12 +103,44 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
             yield Finding("IMP007", severity, message, used[size].place, advice)
 
 
-def _never_called(facts: CodeFacts) -> Iterator[Finding]:
-    added = {handle.entity for executor in facts.executors.values() for handle in executor.handles}
+def _created_by(entity: CodeEntity, facts: CodeFacts) -> Mapping[CodeEntityKind, int]:
+    """How many entities of each kind an action, or a server of parameters or of a lifecycle, creates in the middleware."""
+    match entity.kind:
+        case CodeEntityKind.ACTION_SERVER:
+            return {CodeEntityKind.SERVICE: ACTION_SERVICES, CodeEntityKind.PUBLISHER: ACTION_TOPICS, CodeEntityKind.TIMER: 1}
+        case CodeEntityKind.ACTION_CLIENT:
+            return {CodeEntityKind.CLIENT: ACTION_SERVICES, CodeEntityKind.SUBSCRIPTION: ACTION_TOPICS}
+        case CodeEntityKind.LIFECYCLE:
+            return {CodeEntityKind.SERVICE: LIFECYCLE_SERVICES, CodeEntityKind.PUBLISHER: 1}
+        case CodeEntityKind.PARAMETER_SERVER if any(each.entity == entity.key for each in _every_handle(facts)):
+            services = parameter_services(facts.ros.value if facts.ros is not None else None)
+            changes = dict(entity.options).get("notify_changed_over_dds", True)
+            return {CodeEntityKind.SERVICE: services, CodeEntityKind.PUBLISHER: int(changes)}
+    return {}
+
+
+def _every_handle(facts: CodeFacts) -> list[CodeHandle]:
+    return [handle for executor in facts.executors.values() for handle in executor.handles]
+
+
+def _never_called(facts: CodeFacts, calls: list[FunctionCall]) -> Iterator[Finding]:
+    handles = _every_handle(facts)
+    added = {handle.entity for handle in handles}
+    open_kinds = {each.kind for each in handles if each.kind in WITH_HANDLES and not facts.entities[each.entity].is_created}
+    places = [(call.argument(_TAKEN[call.name]), call) for call in calls if call.name in _TAKEN]
+    taken = {given.key for given, _ in places if given is not None}
     for entity in facts.entities.values():
-        if entity.kind in WITH_HANDLES and entity.key not in added:
-            message = f"the {entity.kind} '{entity.variable}' is never added to an executor, so its callback never runs"
-            yield Finding("IMP017", Severity.WARNING, message, entity.place, "Add it to an executor, or remove it.")
+        if entity.kind not in (*WITH_HANDLES, CodeEntityKind.PARAMETER_SERVER) or entity.key in added:
+            continue
+        message = f"the {entity.kind} '{entity.variable}' is never added to an executor, so its callback never runs"
+        advice = "Add it to an executor, or remove it."
+        if entity.key in taken:
+            message = f"the {entity.kind} '{entity.variable}' is read without an executor, which the description does not have"
+            advice = "Add it to an executor, or add what it does to the description by hand."
+        elif entity.kind in open_kinds:
+            message = f"it is not understood where the {entity.kind} '{entity.variable}' is added to an executor"
+            advice = "Complete it in the description."
+        yield Finding("IMP017", Severity.WARNING, message, entity.place, advice)
     for executor in facts.executors.values():
         if not executor.spins:
             message = f"the executor '{executor.variable}' never spins in these files"
@@ -113,6 +156,17 @@ def _never_called(facts: CodeFacts) -> Iterator[Finding]:
                 message = f"the {handle.kind} that is added here is not created by a function that is understood"
                 advice = "Complete it in the description, and add the others that a loop adds here."
                 yield Finding("IMP017", Severity.WARNING, message, handle.place, advice)
+
+
+def _never_reached(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
+    """Functions that create something, and that nothing leads to from where the program begins, if that is known."""
+    begins = [each for name in ENTRIES for each in walk.program.functions.get(name, ()) if not each.owner]
+    known = {*facts.threads, *facts.publishes, *(each.scope for each in begins)}
+    for call in walk.calls:
+        if begins and call.name in CREATIONS and call.root is not None and call.root.scope not in known:
+            known.add(call.root.scope)
+            message = f"nothing in these files calls '{call.root.name}', which creates entities; it is taken as called"
+            yield Finding("IMP015", Severity.INFO, message, call.place, "Remove them from the description if it is not called.")
 
 
 def _handles(executor: CodeExecutor, facts: CodeFacts) -> Iterator[Finding]:
@@ -192,12 +246,16 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
 
 def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     described = _in_loops(facts)
-    spins = [call for call in walk.calls if call.name in SPINS and is_repeated(call)]
+    users = [call for call in walk.calls if call.name in (*SPINS, *SENDS) and is_repeated(call)]
     for call in walk.calls:
-        if any(call.root is spin.root and call.excludes(spin) for spin in spins):
-            # Of another state than the one that the description has.
+        if call.name not in ROUND_TRIPS or not is_repeated(call) or call.place in described:
             continue
-        if call.name in ROUND_TRIPS and is_repeated(call) and call.place not in described:
+        # Of another state than the one that the description has, or from before its loop.
+        own = [each for each in users if each.root is call.root]
+        inside = [each for each in own if call.loops[: len(each.loops)] == each.loops]
+        if not own or (
+            inside and not any(call.excludes(each) or is_only_at_creation(call, each, walk.calls) for each in inside)
+        ):
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Allow for its timeout where the loop has to be quick."
@@ -247,19 +305,24 @@ def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     reported, described = set(), _in_loops(facts)
     for call in walk.calls:
         given = call.argument(0)
-        entity = facts.entities.get(given.key) if call.name == "rcl_publish" and given is not None else None
+        entity = facts.entities.get(given.key) if call.name in SENDS and given is not None else None
         if entity is None or call.place in reported:
             continue
         reported.add(call.place)
         if call.place in described:
-            message = f"'{entity.variable}' publishes in a loop, outside of callbacks: how long that takes is unknown"
+            message = f"'{entity.variable}' {_VERBS[call.name]} in a loop, outside of callbacks: how long that takes is unknown"
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
+        elif call.place in published and call.loops and any(call.root.scope == scope for scope in facts.publishes if call.root):
+            message = (
+                f"'{entity.variable}' {_VERBS[call.name]} in a loop of unknown length, of which the description has one message"
+            )
+            yield Finding("IMP013", Severity.WARNING, message, call.place, "Add the other messages to 'publishes' by hand.")
         elif call.place not in published:
-            message = f"'{entity.variable}' publishes outside of callbacks, which the description does not have"
+            message = f"'{entity.variable}' {_VERBS[call.name]} outside of callbacks, which the description does not have"
             yield Finding(
                 "IMP013", Severity.WARNING, message, call.place, "Describe it as a timer, or publish in a timer callback."
             )
-        elif entity.reliability == RELIABLE:
+        elif entity.reliability == RELIABLE and entity.kind is CodeEntityKind.PUBLISHER:
             message = (
                 f"publishing with '{entity.variable}' is reliable: the callback waits for the acknowledgement of the agent"
             )

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from amalthea_uros.source.entities import CREATIONS
 from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
 from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind
 from amalthea_uros.source.locks import held_at, is_lock
 from amalthea_uros.source.ports import MILLISECOND
 from amalthea_uros.source.sleeps import SLEEPS, WaitCall, wait_of
-from amalthea_uros.source.walk import CodeWalk, FunctionCall
+from amalthea_uros.source.walk import CodeWalk, FunctionCall, Mark
 from amalthea_uros.units import Time
 
 #: Functions of micro-ROS/rmw_microxrcedds that wait for an answer of the agent -> what they do, and the position of their attempts.
@@ -21,6 +22,7 @@ _AGENT = {
 }
 ROUND_TRIPS = tuple(_AGENT)
 SENDS = ("rcl_publish", "rcl_send_request")
+_CREATING = frozenset({"rclc_executor_init", *CREATIONS})
 _USES = frozenset({*SPIN_KINDS, *SENDS, "rclc_action_publish_feedback", "rclc_action_send_result"})
 
 
@@ -54,11 +56,49 @@ def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
         is_sending = call.name in SENDS and sender is not None
         if not is_sending or not is_repeated(call) or call.root is None or call.place in known:
             continue
-        items = tuple(_items(facts, call, calls))
+        items = tuple(_items(facts, replace(call, loops=_loop_of_thread(call, calls)), calls))
         known |= {item.place for item in items}
+        if _add_to_spins(facts, items):
+            continue
         thread = facts.threads.get(call.root.scope)
         name = thread.name if thread is not None else call.root.name
         facts.senders.append(CodeSender(name=name, thread=thread, items=items, place=call.place))
+
+
+def _add_to_spins(facts: CodeFacts, items: tuple[CodeLoopItem, ...]) -> bool:
+    """Whether executors spin in a loop that sends, which then is theirs, with the loop in which they spin in it."""
+    spinning = [facts.executors[item.of] for item in items if item.kind is CodeLoopKind.SPIN]
+    for executor in spinning:
+        executor.spins[0] = replace(executor.spins[0], items=items)
+    return bool(spinning)
+
+
+def _loop_of_thread(call: FunctionCall, calls: Sequence[FunctionCall]) -> tuple[Mark, ...]:
+    """The loops around the iteration of the thread that sends: up to the outermost one that does not create what it sends with."""
+    created = next((each.loops for each in _creations(call, calls)), ())
+    common = sum(first == second for first, second in zip(created, call.loops, strict=False))
+    is_iteration = call.root is not None and call.root.name == "loop" and not common
+    return call.loops[: common + (not is_iteration)]
+
+
+def _creations(call: FunctionCall, calls: Sequence[FunctionCall]) -> Iterator[FunctionCall]:
+    """The calls of the same thread that create what a call spins or sends with."""
+    used = call.argument(0)
+    for each in calls:
+        given = each.argument(0)
+        if (
+            each.root is call.root
+            and each.name in _CREATING
+            and given is not None
+            and used is not None
+            and given.key == used.key
+        ):
+            yield each
+
+
+def is_only_at_creation(call: FunctionCall, user: FunctionCall, calls: Sequence[FunctionCall]) -> bool:
+    """Whether a call is made only together with the creation of what another one spins or sends with, not in each iteration."""
+    return any(each.always_with(call) and not each.always_with(user) for each in _creations(user, calls))
 
 
 def session_users(facts: CodeFacts, walk: CodeWalk) -> dict[str, list[FunctionCall]]:
@@ -95,6 +135,8 @@ def _timeout(call: FunctionCall) -> Time | None:
 def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall]) -> Iterator[CodeLoopItem]:
     """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
     for call in calls:
+        if is_only_at_creation(call, spin, calls):
+            continue
         if call.root is not spin.root or call.loops[: len(spin.loops)] != spin.loops or call.excludes(spin):
             continue
         if is_lock(call, calls):

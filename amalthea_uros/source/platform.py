@@ -58,7 +58,7 @@ def platform_of(program: CodeProgram, calls: Iterable[FunctionCall], build: Buil
     """
     every, stated, included = list(calls), _stated_ticks(program, build), _included(program)
     port = build.port.value if build.port is not None else _port(included)
-    is_esp32 = has_freertos(board) or any(re.fullmatch(r"esp_\w+\.h", name) for name in included)
+    is_esp32 = has_freertos(board) or any(re.fullmatch(r"(esp_|ESP32)\w*\.h", name) for name in included)
     # Of the boards that micro-ROS for Arduino supports, those with ESP32 have this function.
     is_esp32 = is_esp32 or any(call.name == "set_microros_wifi_transports" and not call.uncertain for call in every)
     if port in OF_ARDUINO and is_esp32 and (build.framework is None or build.framework.value == "arduino"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -50,13 +51,23 @@ FORMS: Mapping[str, _ThreadForm] = {
     "xTaskCreate": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
     "xTaskCreateStatic": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
     "xTaskCreatePinnedToCore": _ThreadForm(0, 3, 1, 2, 4, 6, rtos="freertos"),
+    "xTaskCreateStaticPinnedToCore": _ThreadForm(0, 3, 1, 2, 4, 7, rtos="freertos"),
+    # Of Arduino for ESP32, and of FreeRTOS for several cores, of which it takes a set.
+    "xTaskCreateUniversal": _ThreadForm(0, 3, 1, 2, 4, 6, rtos="freertos"),
+    "xTaskCreateAffinitySet": _ThreadForm(0, 3, 1, 2, 4, rtos="freertos"),
     "osThreadNew": _ThreadForm(0, 1, attributes=2, rtos="freertos"),
     # What it is given comes with osThreadCreate.
     "osThreadDef": _ThreadForm(1, 5, 0, 4, 2, rtos="freertos"),
     "K_THREAD_DEFINE": _ThreadForm(2, 3, 0, 1, 6, rtos="zephyr"),
+    # Of the firmware of the Crazyflie.
+    "STATIC_MEM_TASK_CREATE": _ThreadForm(1, 3, 2, priority=4, rtos="freertos"),
     "k_thread_create": _ThreadForm(3, 4, 0, 2, 7, rtos="zephyr"),
     "pthread_create": _ThreadForm(2, 3, 0),
 }
+
+
+#: Those that count stacks in words, except in ESP-IDF.
+_IN_WORDS = ("xTaskCreate", "xTaskCreateStatic", "xTaskCreateAffinitySet", "osThreadDef")
 
 
 def thread_of(call: FunctionCall, walk: CodeWalk, unit: int | None) -> Thread | None:
@@ -76,7 +87,7 @@ def thread_of(call: FunctionCall, walk: CodeWalk, unit: int | None) -> Thread | 
         attributes.get(key) or (call.argument(index) if index is not None else None)
         for key, index in (("name", form.name), ("stack_size", form.stack), ("priority", form.priority), ("core", form.core))
     )
-    factor = unit if call.name in ("xTaskCreate", "xTaskCreateStatic", "osThreadDef") else 1
+    factor = unit if call.name in _IN_WORDS else 1
     size = stack.number if stack is not None else None
     return Thread(
         name=(
@@ -175,6 +186,9 @@ def _key(call: FunctionCall, port: str, board: str) -> str | None:
         line = given.name if given is not None else "Serial"
         return "usb_cdc" if line == "SerialUSB" else "serial" if line != "Serial" else serial_of_board(board)
     names = " ".join(argument.text for argument in call.arguments).lower()
+    if re.search(r"\bh?(fd)?can\d*\b", names) is not None:
+        # How the messages are cut to frames is up to the application.
+        return None
     is_framed = given is not None and given.resolved.text in ("true", "1")
     if is_framed or any(word in names for word in ("serial", "uart", "usb", "cdc")):
         if port == "pico-sdk":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -20,6 +21,10 @@ _NESTED = ("pointer_declarator", "array_declarator", "reference_declarator", "pa
 #: Classes that are members of each other.
 _MAX_DEPTH = 20
 _CHANGES = ("assignment_expression", "update_expression")
+#: A macro with parameters whose text is a statement.
+_STATEMENT = re.compile(rb"^[ \t]*#[ \t]*define[ \t]+(\w+)\([^)\n]*\)[ \t]*(?:\\\r?\n\s*)?(?:\{|do\b|if\b)", re.MULTILINE)
+#: A stack of Zephyr, which is an array by a macro: zephyr include/zephyr/kernel/thread_stack.h.
+_STACK = re.compile(r"\bK_(?:THREAD|KERNEL)_STACK_(?:MEMBER|DEFINE)\s*\(\s*(\w+)\s*,\s*([^;]+?)\s*\)\s*;")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,8 +115,10 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
     ReadError : the parsers are not installed.
     """
     program = CodeProgram()
-    for file in files:
+    for file in _with_semicolons(files):
         root = parse(file)
+        for name, size in _STACK.findall(file.text.decode("utf-8", "replace")):
+            program.arrays[name].add(size)
         program.files.append((file, root))
         for node in descendants(root):
             _note(program, file, node)
@@ -120,6 +127,17 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
         if function is not None:
             program.functions[name].append(function)
     return program
+
+
+def _with_semicolons(files: tuple[SourceFile, ...]) -> list[SourceFile]:
+    """Files with a semicolon where a macro that is a statement has none, which compiles, but is no statement for the parser."""
+    names = {name for file in files for name in _STATEMENT.findall(file.text)}
+    if not names:
+        return list(files)
+    alone = re.compile(
+        rb"^([ \t]*(?:%s)[ \t]*\([^\n;{}\\]*\))(?=[ \t\r]*$)" % b"|".join(map(re.escape, sorted(names))), re.MULTILINE
+    )
+    return [SourceFile(file.path, alone.sub(rb"\1;", file.text)) for file in files]
 
 
 def _function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction | None:

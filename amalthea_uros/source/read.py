@@ -28,7 +28,7 @@ _NAMES = frozenset({*SLEEPS, *FORMS, *SETTERS, *LOCKS, "Serial.begin"})
 #: What FreeRTOS.h and task.h define alike for all controllers.
 _CONSTANTS = {"tskIDLE_PRIORITY": "0"}
 #: rclc_parameter/include/rclc_parameter/rclc_parameter.h of ros2/rclc; by the distribution.
-_SERVER_HANDLES = "RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES"
+_SERVER_HANDLES = ("RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES", "RCLC_PARAMETER_EXECUTOR_HANDLES_NUMBER")
 #: A place in an array that is not constant.
 _OPEN = re.compile(r"\[(?!\d+\])[^\]]*\]")
 _OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
@@ -48,8 +48,10 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
     """
     program = read_program(sources.code)
     facts, build = CodeFacts(types=defined_types(sources.interfaces)), build_facts(sources.build)
-    if not program.macros[_SERVER_HANDLES]:
-        program.macros[_SERVER_HANDLES].add(str(parameter_services(build.ros.value if build.ros is not None else None)))
+    for name in _SERVER_HANDLES:
+        program.macros[name] = program.macros[name] or {
+            str(parameter_services(build.ros.value if build.ros is not None else None))
+        }
     for name, stated in (_CONSTANTS | build.macros).items():
         program.macros[name].add(stated)
     walk = CodeWalk(program, _NAMES, {name: (form.entry, form.argument) for name, form in FORMS.items()})
@@ -90,6 +92,10 @@ def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
                 facts.findings += _of_each_object(call, entity, walk.program)
             if entity is not None and entity.key not in facts.entities:
                 facts.entities[entity.key] = entity
+            elif entity is not None and _differs(entity, facts.entities[entity.key]):
+                message = f"'{entity.variable}' is created again as something else; the description has the first one"
+                advice = "Add the other ones to the description by hand."
+                facts.findings.append(Finding("IMP003", Severity.WARNING, message, call.place, advice))
     # All executors first: functions that are called later can come earlier in the files.
     _act(facts, walk, {"rclc_executor_init"})
     _act(facts, walk, ACTIONS.keys() - {"rclc_executor_init"})
@@ -100,6 +106,13 @@ def _note_objects(facts: CodeFacts, walk: CodeWalk) -> None:
                 facts.entities[handle.entity] = CodeEntity(
                     kind=handle.kind, key=handle.entity, variable=variable, place=handle.place, is_created=False
                 )
+
+
+def _differs(entity: CodeEntity, other: CodeEntity) -> bool:
+    """Whether two entities of one variable have another name, type, period or callback, so that they are not one created twice."""
+    pairs = ((entity.name, other.name), (entity.type, other.type), (entity.period, other.period))
+    callbacks = [each.callback.name if each.callback is not None else "" for each in (entity, other)]
+    return any(None not in pair and pair[0] != pair[1] for pair in pairs) or callbacks[0] != callbacks[1]
 
 
 def _of_each_object(call: FunctionCall, entity: CodeEntity, program: CodeProgram) -> list[Finding]:

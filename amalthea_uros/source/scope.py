@@ -26,9 +26,14 @@ _FACTORS = {
     **dict.fromkeys(("RCL_S_TO_NS", "RCUTILS_S_TO_NS"), 10**9),
     **dict.fromkeys(("RCL_MS_TO_NS", "RCUTILS_MS_TO_NS"), 10**6),
     **dict.fromkeys(("RCL_US_TO_NS", "RCUTILS_US_TO_NS"), 10**3),
+    "K_PRIO_PREEMPT": 1,
 }
 #: The binding of the object whose method is called.
 THIS = "this"
+#: The binding of a number for the call that leads to a function, which distinguishes what it allocates in several calls.
+SITE = "@"
+#: Functions that allocate an object.
+_ALLOCATIONS = re.compile(r"\w*(m|c)alloc|\w*allocate")
 #: Functions that write a text to a buffer -> the position of its format; and those that make a text of a value.
 _PRINTS = {"snprintf": 2, "sprintf": 1}
 _TEXTS = ("String", "string", "to_string")
@@ -105,6 +110,7 @@ class Expression:
             bindings[THIS] = self.at(holder)
         elif THIS in self.bindings:
             bindings[THIS] = self.bindings[THIS]
+        bindings[SITE] = call_site(self.file, self.node, self.bindings)
         value = returns[0].named_children[0]
         return Expression(self.program, value, function.file, function, bindings, self.depth + 1).core
 
@@ -195,14 +201,16 @@ class Expression:
             plain is not None and isinstance(self.bindings.get(text_of(plain)), Expression) and place is self.function
         )
         if not is_parameter and (
-            node.type not in ("pointer_expression", "call_expression")
+            node.type not in ("pointer_expression", "call_expression", "subscript_expression", "new_expression")
             or (node.type == "pointer_expression" and not text_of(node).startswith("&"))
         ):
             return key
         function, file = (place, place.file) if isinstance(place, CodeFunction) else (None, place)
         bindings = self.bindings if function is self.function else {}
+        if _allocates(plain) and function is not None:
+            return f"{key}{SITE}{bindings.get(SITE, '')}"
         target = Expression(self.program, node, file, function, bindings, self.depth + 1)
-        return target.key if target.core.node.type != "call_expression" else key
+        return target.key if target.core.node.type not in ("call_expression", "new_expression") else key
 
     @property
     def _holder(self) -> str:
@@ -221,6 +229,9 @@ class Expression:
         if own.node.type == "subscript_expression" and (array := own.node.child_by_field_name("argument")) is not None:
             index = own._index()
             return f"{own.at(array).name.rstrip('_')}_{index.number if index is not None and index.number is not None else 'n'}"
+        holder, member = own.node.child_by_field_name("argument"), own.node.child_by_field_name("field")
+        if holder is not None and member is not None and own.at(holder).core.node.type == "subscript_expression":
+            return f"{own.at(holder).name}.{text_of(member)}"
         text = own.text.replace("->", ".").replace("this.", "")
         return text.rpartition("::")[2]
 
@@ -362,7 +373,11 @@ class Expression:
             return f"{parts[0]}{parts[1]}" if is_sum and len(parts) == 2 and None not in parts else None
         name, arguments = called(self.node)
         function = self.node.child_by_field_name("function")
-        if name.endswith(".c_str") and function is not None and (text := function.child_by_field_name("argument")) is not None:
+        if (
+            name.endswith((".c_str", ".data"))
+            and function is not None
+            and (text := function.child_by_field_name("argument")) is not None
+        ):
             return self.at(text).string
         return self.at(arguments[0])._as_text() if name.rpartition("::")[2] in _TEXTS and len(arguments) == 1 else None
 
@@ -436,6 +451,18 @@ class Expression:
 
 #: What a name stands for: an argument, or the value of a counter.
 Binding: TypeAlias = Expression | int
+
+
+def call_site(file: SourceFile, node: Node, bindings: Mapping[str, Binding]) -> int:
+    """A number for a call, and for those that lead to it."""
+    return hash((str(file.path), node.start_byte, bindings.get(SITE)))
+
+
+def _allocates(node: Node | None) -> bool:
+    return node is not None and (
+        node.type == "new_expression"
+        or (node.type == "call_expression" and _ALLOCATIONS.fullmatch(called(node)[0]) is not None)
+    )
 
 
 def called(node: Node) -> tuple[str, list[Node]]:

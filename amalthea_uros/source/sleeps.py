@@ -33,7 +33,9 @@ _TICKS = ("vTaskDelay", "osDelay", "tx_thread_sleep")
 #: Functions that wait for others -> the position of their timeout.
 _BLOCKING = {
     **dict.fromkeys(("xQueueReceive", "xQueuePeek", "k_msgq_get", "k_poll", "osThreadFlagsWait", "tx_queue_receive"), 2),
-    **dict.fromkeys(("xSemaphoreTake", "ulTaskNotifyTake", "osSemaphoreAcquire", "k_sem_take", "tx_semaphore_get"), 1),
+    **dict.fromkeys(
+        ("rcl_wait", "xSemaphoreTake", "ulTaskNotifyTake", "osSemaphoreAcquire", "k_sem_take", "tx_semaphore_get"), 1
+    ),
     **dict.fromkeys(("xTaskNotifyWait", "osMessageQueueGet", "osEventFlagsWait", "xStreamBufferReceive"), 3),
     **dict.fromkeys(("xEventGroupWaitBits", "xMessageBufferReceive"), 4),
 }

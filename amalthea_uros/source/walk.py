@@ -10,7 +10,7 @@ from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of
-from amalthea_uros.source.scope import THIS, Binding, Expression, called
+from amalthea_uros.source.scope import SITE, THIS, Binding, Expression, call_site, called
 from amalthea_uros.source.syntax import branches, descendants, is_conditional, location_of, parse_expression, text_of
 
 if TYPE_CHECKING:
@@ -262,7 +262,14 @@ class CodeWalk:
             for value in values:
                 self._visit(body, replace(context, bindings={**context.bindings, name: value}))
         else:
-            self._visit(body, replace(context, loops=(*context.loops, _mark(node, context))))
+            loops = (*context.loops, _mark(node, context))
+            self._visit(body, replace(context, loops=loops, bindings={**context.bindings, **self._element(node, context)}))
+
+    def _element(self, node: Node, context: _WalkPosition) -> dict[str, Binding]:
+        """The variable of a loop over something whose length is unknown, as any element of it."""
+        name, array = _variable(node), node.child_by_field_name("right")
+        element = parse_expression(f"{text_of(array)}[{name}]", is_c=False) if name and array is not None else None
+        return {} if element is None else {name: self._expression(element, context)}
 
     def _is_timed(self, condition: Node, body: Node) -> bool:
         """Whether a loop does nothing that matters until a clock shows a time."""
@@ -271,16 +278,14 @@ class CodeWalk:
 
     def _elements(self, node: Node, context: _WalkPosition) -> tuple[str, Sequence[Binding]] | None:
         """The variable of a loop over an array, and the elements."""
-        declarator, array = node.child_by_field_name("declarator"), node.child_by_field_name("right")
-        while declarator is not None and declarator.type != "identifier":
-            declarator = next(iter(declarator.named_children), None)
-        if declarator is None or array is None:
+        name, array = _variable(node), node.child_by_field_name("right")
+        if not name or array is None:
             return None
         length = self._expression(array, context).length
         if length is None or length > _MAX_ITERATIONS:
             return None
         elements = [parse_expression(f"{text_of(array)}[{index}]", is_c=False) for index in range(length)]
-        return text_of(declarator), [self._expression(each, context) for each in elements if each is not None]
+        return name, [self._expression(each, context) for each in elements if each is not None]
 
     def _iterations(self, node: Node, context: _WalkPosition) -> tuple[str, Sequence[Binding]] | None:
         """The counter of a loop that counts up from one constant to another, and its values."""
@@ -348,11 +353,12 @@ class CodeWalk:
         name, arguments = called(node)
         for argument in arguments:
             self._visit(argument, context)
-        callee = self._callee(name, node, context)
+        callee = self._callee(name, len(arguments), node, context)
         expressions = tuple(self._expression(argument, context) for argument in arguments)
         if callee is not None:
             if callee not in context.stack and callee in self._relevant.functions:
-                self._enter(callee, expressions, self._holder(node, callee, context), context)
+                holder = self._holder(node, callee, context)
+                self._enter(callee, expressions, holder, call_site(context.file, node, context.bindings), context)
             return
         if name in self._threads and self._threads[name][1] < len(expressions):
             entry, given = self._threads[name]
@@ -376,8 +382,13 @@ class CodeWalk:
             )
         )
 
-    def _callee(self, name: str, node: Node, context: _WalkPosition) -> CodeFunction | None:
-        """The function of the sources that is called: of the object's class, else the same class or file, else the only one."""
+    def _callee(self, name: str, number: int, node: Node, context: _WalkPosition) -> CodeFunction | None:
+        """The function of the sources that is called: of the object's class, else the same class or file, else the only one.
+
+        Parameters
+        ----------
+        number : of arguments, which distinguishes overloads
+        """
         function = node.child_by_field_name("function")
         given = function.child_by_field_name("argument") if function is not None else None
         called_class = (
@@ -392,6 +403,8 @@ class CodeWalk:
             [each for each in found if each.file is context.file],
             found,
         ):
+            if len(close) > 1:
+                close = [each for each in close if len(each.parameters) == number]
             if len(close) == 1:
                 return close[0]
         return None
@@ -408,7 +421,12 @@ class CodeWalk:
         return context.bindings.get(THIS) if is_same else None
 
     def _enter(
-        self, callee: CodeFunction, arguments: tuple[Expression, ...], holder: Binding | None, context: _WalkPosition
+        self,
+        callee: CodeFunction,
+        arguments: tuple[Expression, ...],
+        holder: Binding | None,
+        site: int,
+        context: _WalkPosition,
     ) -> None:
         self._entries -= 1
         if self._entries < 0:
@@ -416,6 +434,7 @@ class CodeWalk:
             return
         bindings: dict[str, Binding] = dict(zip(callee.parameters, arguments, strict=False))
         bindings.pop("", None)
+        bindings[SITE] = site
         if holder is not None:
             bindings[THIS] = holder
         inner = replace(context, file=callee.file, function=callee, bindings=bindings, stack=(*context.stack, callee))
@@ -472,6 +491,14 @@ def _leaves(branch: Node) -> bool:
 
 def _mark(node: Node, context: _WalkPosition) -> Mark:
     return str(context.file.path), node.start_byte
+
+
+def _variable(node: Node) -> str:
+    """The variable of a loop over elements, "" for other loops."""
+    declarator = node.child_by_field_name("declarator")
+    while declarator is not None and declarator.type != "identifier":
+        declarator = next(iter(declarator.named_children), None)
+    return text_of(declarator) if declarator is not None else ""
 
 
 def _start(node: Node) -> tuple[str, Node | None]:

@@ -104,7 +104,8 @@ class ExecutorSection(DescriptionSection):
     """Where callbacks without `runs_in` run: each in a separate task, or one after the other in the executor; default: `in-executor`
     for an executor with a `loop`, else what the platform says, `own-task` if it says nothing."""
     order: list[Name] = entry(default_factory=list)
-    """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file."""
+    """Order in which callbacks were added to the executor; callbacks not listed follow in the order of the file. An executor
+    without callbacks needs an empty list."""
     semantics: Annotated[Literal["ROS", "LET"], _SEMANTICS] = "ROS"
     """`ROS`: each message is taken just before its callback runs; `LET`: all messages are taken before the first callback runs."""
     trigger: TriggerSection = entry(default_factory=TriggerSection.model_construct)

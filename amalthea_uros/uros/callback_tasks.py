@@ -55,7 +55,7 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
         inside = [callback for callback in own if callback.in_executor]
         ordered = registration_order(inside if executor.loop is None else own, executor, context.notes)
         check_order(executor, context.notes)
-        if not own and (executor.loop is not None or len(executors) > 1):
+        if not own and not executor.states("order") and (executor.loop is not None or len(executors) > 1):
             advice = f"Set 'runs_in: {executor.name}' at callbacks or nodes, or remove the executor."
             context.notes.error("APP003", f"the executor {executor.name!r} serves no callback", executor.location(), advice)
         elif executor.loop is not None:

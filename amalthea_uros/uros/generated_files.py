@@ -6,14 +6,13 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from amalthea_uros._internal.ports import known_ports, parameter_services
+from amalthea_uros._internal.ports import LIFECYCLE_SERVICES, known_ports, parameter_services
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
-from amalthea_uros.uros.application.entities import LIFECYCLE_SERVICES
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.firmware.code import code_texts, firmware_code
 from amalthea_uros.uros.firmware.omissions import omissions

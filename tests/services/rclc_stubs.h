@@ -42,6 +42,10 @@ typedef void (* rclc_client_callback_t)(const void *);
 typedef void (* rclc_gc_callback_t)(void);
 typedef rcl_ret_t (* rclc_action_server_handle_goal_callback_t)(rclc_action_goal_handle_t *, void *);
 typedef bool (* rclc_action_server_handle_cancel_callback_t)(rclc_action_goal_handle_t *, void *);
+typedef void (* rclc_action_client_goal_callback_t)(rclc_action_goal_handle_t *, bool, void *);
+typedef void (* rclc_action_client_feedback_callback_t)(rclc_action_goal_handle_t *, void *, void *);
+typedef void (* rclc_action_client_result_callback_t)(rclc_action_goal_handle_t *, void *, void *);
+typedef void (* rclc_action_client_cancel_callback_t)(rclc_action_goal_handle_t *, bool, void *);
 typedef bool (* rclc_parameter_callback_t)(const Parameter *, const Parameter *, void *);
 typedef bool (* rclc_executor_trigger_t)(rclc_executor_handle_t *, unsigned int, void *);
 
@@ -93,6 +97,10 @@ rcl_ret_t rclc_executor_add_parameter_server(rclc_executor_t *, rclc_parameter_s
 rcl_ret_t rclc_action_server_init_default(rclc_action_server_t *, rcl_node_t *, rclc_support_t *, const rosidl_action_type_support_t *, const char *);
 rcl_ret_t rclc_action_server_fini(rclc_action_server_t *, rcl_node_t *);
 rcl_ret_t rclc_executor_add_action_server(rclc_executor_t *, rclc_action_server_t *, size_t, void *, size_t, rclc_action_server_handle_goal_callback_t, rclc_action_server_handle_cancel_callback_t, void *);
+rcl_ret_t rclc_action_client_init_default(rclc_action_client_t *, rcl_node_t *, const rosidl_action_type_support_t *, const char *);
+rcl_ret_t rclc_action_client_fini(rclc_action_client_t *, rcl_node_t *);
+rcl_ret_t rclc_action_send_goal_request(rclc_action_client_t *, void *, rclc_action_goal_handle_t **);
+rcl_ret_t rclc_executor_add_action_client(rclc_executor_t *, rclc_action_client_t *, size_t, void *, void *, rclc_action_client_goal_callback_t, rclc_action_client_feedback_callback_t, rclc_action_client_result_callback_t, rclc_action_client_cancel_callback_t, void *);
 rcl_ret_t rclc_executor_spin(rclc_executor_t *);
 rcl_ret_t rclc_executor_spin_some(rclc_executor_t *, const uint64_t);
 rcl_ret_t rclc_executor_spin_period(rclc_executor_t *, const uint64_t);

@@ -28,7 +28,7 @@ middleware:
       {thread}
       max_handles: 20
       loop: {loop}
-      order: [on_scan, control, on_mode, on_answer, wake, on_move]
+      order: [on_scan, control, on_mode, on_answer, wake, on_move, on_done]
     {second}
   transport: {{serial: {{baud_rate: 115200}}}}
   limits: {{{limits}}}
@@ -46,12 +46,10 @@ application:
       clients: [{{name: on_answer, service: ask, request_size: 3 B, response_size: 5 B, TIMES}}]
       guard_conditions: [{{name: wake, TIMES}}]
       action_servers: [{{name: on_move, goal_size: 20 B, result_size: 6 B, feedback_size: 18 B, TIMES}}]
+      action_clients: [{{name: on_done, action: fetch, goal_size: 20 B, result_size: 6 B, feedback_size: 18 B, TIMES}}]
       parameter_server: {{rate: 1 Hz, execution_time: 1 ms}}
 """.replace("TIMES", "rate: 1 Hz, execution_time: 1 ms")
-ACTION_CLIENT = (
-    "action_clients: [{name: on_done, action: move, goal_size: 20 B, result_size: 6 B, feedback_size: 18 B, "
-    "rate: 1 Hz, execution_time: 1 ms}]"
-)
+LIFECYCLE = "{rate: 1 Hz, execution_time: 1 ms}"
 LIMITS = ", ".join(f"RMW_UXRCE_MAX_{each}: 30" for each in ("PUBLISHERS", "SUBSCRIPTIONS", "SERVICES", "CLIENTS", "HISTORY"))
 THREAD = "priority: 4, stack: 9000 B"
 #: Port -> operating system, and the loop of its first thread.
@@ -134,6 +132,9 @@ def facts(description, has_threads=True):
         "clients": {(c.name, c.service, c.request_size, c.response_size) for node in nodes for c in node.clients},
         "guards": {guard.name for node in nodes for guard in node.guard_conditions},
         "actions": {(a.name, a.goal_size, a.result_size, a.feedback_size) for node in nodes for a in node.action_servers},
+        "action_clients": {
+            (a.name, a.action, a.goal_size, a.result_size, a.feedback_size) for node in nodes for a in node.action_clients
+        },
         "servers": [node.parameter_server is not None for node in nodes],
         "loops": [(each.name, loop_of(each.loop)) for each in executors],
         "threads": [(each.priority, each.stack) for each in executors] if has_threads else [],
@@ -257,9 +258,9 @@ def test_the_stamps_of_the_code_are_measured(tmp_path):
         ("sleep: 3 ms", "sleep: 0.5 ms", "no function of the port is known to sleep for 500 us"),
         ("priority: 4", "", "'stack' and 'priority' of 'first' are not stated"),
         (
-            "guard_conditions:",
-            f"{ACTION_CLIENT}\n      guard_conditions:",
-            "no code is written for clients of actions of 'robot'",
+            "parameter_server: {",
+            f"lifecycle: {LIFECYCLE}\n      parameter_server: {{",
+            "no code is written for a lifecycle of 'robot'",
         ),
         ("loop: {spin_some: 1 ms, sleep: 3 ms}", "period: 10 ms\n      callbacks: in-executor", "'first' has no 'loop'"),
         ("max_handles: 20", "trigger: {custom: [[control]]}", "the trigger of 'first' is a function of the application"),

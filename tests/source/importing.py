@@ -25,6 +25,7 @@ VALUES = {
     "stack": "16 kB",
     "trigger": "any",
     "order": "[]",
+    "reliability": "reliable",
     "publishes": "[]",
     "events": "false",
     "string": "20",

@@ -68,6 +68,20 @@ INI = "[env:robot]\nboard = {}\nframework = arduino\nlib_deps = https://github.c
             },
             ["ros: humble # platformio.ini:7"],
         ),
+        # A section that extends another one, and a branch in the address of a library.
+        (
+            ARDUINO,
+            {"platformio__ini": INI.format("esp32dev").replace("env:robot", "base") + "[env:robot]\nextends = base\n"},
+            ["platform: esp32", "serial: {baud_rate: TODO}"],
+        ),
+        (
+            ARDUINO,
+            {"platformio__ini": INI.format("esp32dev").replace("_platformio", "_arduino.git#v2.0.7-humble ; a comment")},
+            ["ros: humble", "port: arduino"],
+        ),
+        # All files but those for the smallest boards keep four messages: micro-ROS/micro_ros_platformio metas/colcon.meta.
+        (ARDUINO, {"platformio__ini": INI.format("esp32dev")}, ["RMW_UXRCE_MAX_HISTORY: 4"]),
+        (TASK.format("9000"), {"sdkconfig": 'CONFIG_IDF_TARGET="esp32s3"\n'}, ["platform: esp32-s3 # sdkconfig:1"]),
         # Settings of Kconfig are macros of the code; a stack that is not constant is a gap.
         (
             TASK.format("CONFIG_STACK"),

@@ -22,6 +22,7 @@ FLAWS = {
     "multi_io.c": {"IMP006", "IMP011", "IMP012", "IMP013"},
     "ping_pong.c": {"IMP012", "IMP021"},
     "reconnection.ino": {"IMP018"},
+    "parameter_server.c": {"IMP007"},
     "two_executors.cpp": {"IMP023"},
     "zephyr_main.c": {"IMP009"},
 }

@@ -104,6 +104,8 @@ def test_what_is_not_understood_of_an_executor_is_a_gap(tmp_path):
     text = 'void main(void) { check(rclc_node_init_default(&node, "n", "", &s)); check(rclc_executor_init(&e, &c, 1, &a));'
     result = imported(tmp_path, f"{text} while (1) {{ {SPIN} usleep(1000); }} }}")
     assert "order: TODO" in result.text
+    # Without any callback, which then is stated, it is accepted.
+    assert [each for each in described(result, tmp_path)[1] if each.severity == "error"] == []
 
 
 @pytest.mark.parametrize(

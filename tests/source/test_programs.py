@@ -1,5 +1,7 @@
 """Programs as people write them: those of `combined.py`, whose facts follow from their parts, and those of `programs/` by hand."""
 
+import re
+
 import pytest
 import yaml
 from combined import PROGRAMS
@@ -31,8 +33,8 @@ def in_any_turn(items):
 
 
 def items_of(loop):
-    """The items of a loop as it is written, in one form for all ways to write it."""
-    items = [{key: value} for key, value in loop.items()] if isinstance(loop, dict) else loop
+    """The items of a loop as it is written, in one form for all ways to write it; none of a gap."""
+    items = [{key: value} for key, value in loop.items()] if isinstance(loop, dict) else loop or ()
     return [" ".join(f"{key} {value}" for key, value in each.items()) for each in items]
 
 
@@ -93,6 +95,21 @@ def test_a_program_that_was_read_by_hand(name, tmp_path):
     assert rules(result) - {"IMP008", "IMP018"} == set(expected.get("findings", ()))
     (tmp_path / "app.yaml").write_text(filled(result.text))
     assert errors_of(tmp_path / "app.yaml") == set(expected.get("errors", ()))
+
+
+@pytest.mark.parametrize("name", ["parameters-on-humble.ino", "action-in-thread.c", "queues-to-topics.c", "endless-spin.c"])
+def test_the_description_lacks_what_the_code_lacks(name, tmp_path):
+    """Entities of actions and of parameter servers count in the pools, too."""
+    result = import_code([FOLDER / name])
+    (tmp_path / "app.yaml").write_text(filled(result.text))
+    try:
+        findings = describe(tmp_path / "app.yaml").findings
+    except ReadError as error:
+        findings = error.findings
+    needed = r"RMW_UXRCE_MAX_(?:PUBLISHERS|SUBSCRIPTIONS|SERVICES|CLIENTS)"
+    lacking = {re.search(needed, each.message) for each in result.findings if each.rule == "IMP007"}
+    stated = {re.search(needed, each.message) for each in findings if each.rule == "UR120"}
+    assert {each[0] for each in lacking} == {each[0] for each in stated if each is not None}
 
 
 def test_there_are_programs_of_all_kinds():

@@ -140,7 +140,7 @@ def waits_return_at_once(executor: Executor) -> str:
     A timer that is due makes the timeout 0, also if the trigger condition defers it (ros2/rcl, rcl/src/rcl/wait.c).
     """
     if not timeout_of(executor):
-        if all(handle.kind is HandleKind.LOOP_ITEM for handle in executor.handles):
+        if executor.handles and all(handle.kind is HandleKind.LOOP_ITEM for handle in executor.handles):
             return "nothing waits between two times that it sends"
         what = "it has only timers" if not messages(executor) else "its timeout is below the resolution of the middleware"
         return f"its waits return at once, because {what}"

@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from amalthea_uros._internal.ports import parameter_services
+from amalthea_uros._internal.ports import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, parameter_services
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
-
-#: An action server has services for goals, results and cancelling, and publishes feedback and its status; an action client has their
-#: counterparts (ros2/rcl rcl_action/src/rcl_action/action_server.c, action_client.c).
-ACTION_SERVICES, ACTION_TOPICS = 3, 2
-#: A lifecycle node with its communication interface creates all five services, however many are added to the executor, and a publisher
-#: (ros2/rcl rcl_lifecycle/src/com_interface.c).
-LIFECYCLE_SERVICES = 5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -71,7 +71,7 @@ class ExecutorRunnables:
         handles = sum(each.handles for each in callbacks)
         parts = (cost.base, *([cost.per_timer] * timer_count(callbacks)), *([cost.per_handle] * handles))
         activities = self.context.converter.execute(parts, self.core, executor.location("execution_time"))
-        if not activities and all(each.kind is HandleKind.LOOP_ITEM for each in callbacks):
+        if not activities and callbacks and all(each.kind is HandleKind.LOOP_ITEM for each in callbacks):
             activities = AT_ONCE
         return Runnable(name=spin_name(executor.name), activities=activities, origin=executor.location())
 

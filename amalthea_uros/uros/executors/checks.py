@@ -89,7 +89,7 @@ def _check_polling(executor: Executor, section: spec.ExecutorSection, notes: Not
             else f"Set a timeout of {time_text(resolution)} or more"
         )
         notes.warning("EXE003", message, where, f"{timeout}, or add a 'sleep'.")
-    elif reason and all(handle.kind is HandleKind.LOOP_ITEM for handle in executor.handles):
+    elif reason and executor.handles and all(handle.kind is HandleKind.LOOP_ITEM for handle in executor.handles):
         message = f"{executor.name!r} can use all the time that others leave it: {reason}"
         notes.warning("EXE003", message, where, "Add a 'sleep'.")
     elif reason:

@@ -148,9 +148,8 @@ def _spins_elsewhere(section: ExecutorSection, others: Sequence[ExecutorSection]
 
 def _problems(nodes: Sequence[NodeSection]) -> Iterator[Finding]:
     for node in nodes:
-        for kind, sections in (("clients of actions", node.action_clients), ("a lifecycle", [node.lifecycle])):
-            for section in filter(None, sections):
-                yield without_code(f"no code is written for {kind} of {node.name!r}", section.location())
+        if node.lifecycle is not None:
+            yield without_code(f"no code is written for a lifecycle of {node.name!r}", node.lifecycle.location())
     for section, kind in open_types(nodes):
         message = f"{kind} has no longest string or sequence: nothing can give it memory"
         yield Finding("GEN010", Severity.ERROR, message, section.location(), "State 'bounds'.")
@@ -158,7 +157,7 @@ def _problems(nodes: Sequence[NodeSection]) -> Iterator[Finding]:
 
 def header_of(message: CodeMessage) -> str:
     """The header of a type: ros2/rosidl rosidl_cmake, string_camel_case_to_lower_case_underscore."""
-    name = re.sub(r"(_SendGoal)?_(Request|Response)$", "", message.type.name)
+    name = re.sub(r"(_SendGoal|_GetResult)?_(Request|Response)$|_FeedbackMessage$", "", message.type.name)
     snake = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     snake = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", snake).lower()
     return f"{message.type.package}/{message.type.kind}/{snake}.h"

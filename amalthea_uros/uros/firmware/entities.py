@@ -10,6 +10,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import (
+    ActionClient,
     ActionServer,
     CallbackSection,
     Client,
@@ -72,7 +73,7 @@ class CodeHandler(Brief):
 
     Attributes
     ----------
-    kind : `timer`, `subscription`, `service`, `client`, `guard_condition`, `action_server` or `parameter_server`
+    kind : `timer`, `subscription`, `service`, `client`, `guard_condition`, `action_server`, `action_client` or `parameter_server`
     callback : the function that the executor calls
     hook : the function of the application that it calls
     messages : what it gets, and what it fills in before it returns
@@ -94,7 +95,7 @@ class CodeHandler(Brief):
     def whole_type(self) -> MessageType:
         """The type of a service or action."""
         part = self.messages[0].type
-        return MessageType(part.package, part.kind, re.sub(r"(_SendGoal)?_Request$", "", part.name))
+        return MessageType(part.package, part.kind, re.sub(r"(_SendGoal)?_Request$|_GetResult_Response$", "", part.name))
 
 
 class Identifiers:
@@ -162,15 +163,14 @@ class CodeEntities:
         return CodePublisher(section=section, node=self.nodes[node.name], variable=variable, message=message)
 
     def _messages(self, section: TypedMessage, name: str, kind: str) -> tuple[CodeMessage, ...]:
-        """The messages of a type, or of one that stands for it; services have two."""
-        keys = type(section).sizes
+        """The messages of a type, or of one that stands for it; services and clients of actions have two."""
         stated, bounds = section.type, section.bounds
         own = MessageType(*stated.split("/")) if stated is not None else self._stand_in(section, name, kind)
         created = []
-        # The goal is what an action server keeps a variable for; it sends the rest by functions of its own.
-        for part in keys.values() if kind != "action" else ("SendGoal_Request",):
+        # What is received has a variable; the rest is sent by functions of its own.
+        for part in _RECEIVED.get(type(section), type(section).sizes.values()):
             whole = own.part(part) if part else own
-            length = length_of(own.part("Goal") if kind == "action" else whole) if stated is not None else None
+            length = length_of(own.part(_CONTENT[part]) if kind == "action" else whole) if stated is not None else None
             given = {each: getattr(bounds, each) or 0 for each in _MEMORY} if bounds is not None else dict.fromkeys(_MEMORY, 0)
             created.append(
                 CodeMessage(
@@ -202,16 +202,17 @@ class CodeEntities:
     def _handler(self, node: NodeSection, section: CallbackSection) -> CodeHandler:
         kind = _KINDS[type(section)]
         messages: tuple[CodeMessage, ...] = ()
-        if isinstance(section, Subscription | ServiceSection | Client | ActionServer):
-            subject = (
-                section.topic
-                if isinstance(section, Subscription)
-                else section.service
-                if isinstance(section, Client)
-                else section.name
-            )
-            form = "msg" if isinstance(section, Subscription) else "action" if isinstance(section, ActionServer) else "srv"
-            messages = self._messages(section, subject, form)
+        match section:
+            case Subscription():
+                messages = self._messages(section, section.topic, "msg")
+            case ServiceSection():
+                messages = self._messages(section, section.name, "srv")
+            case Client():
+                messages = self._messages(section, section.service, "srv")
+            case ActionServer():
+                messages = self._messages(section, section.name, "action")
+            case ActionClient():
+                messages = self._messages(section, section.action, "action")
         return CodeHandler(
             kind=kind,
             name=section.name,
@@ -241,6 +242,12 @@ class CodeEntities:
         )
 
 
+#: The messages of an action that are received -> what of it is in them.
+_CONTENT = {"SendGoal_Request": "Goal", "GetResult_Response": "Result", "FeedbackMessage": "Feedback"}
+_RECEIVED: dict[type[TypedMessage], tuple[str, ...]] = {
+    ActionServer: ("SendGoal_Request",),
+    ActionClient: ("GetResult_Response", "FeedbackMessage"),
+}
 _KINDS: dict[type[CallbackSection], str] = {
     Subscription: "subscription",
     Timer: "timer",
@@ -248,6 +255,7 @@ _KINDS: dict[type[CallbackSection], str] = {
     Client: "client",
     GuardCondition: "guard_condition",
     ActionServer: "action_server",
+    ActionClient: "action_client",
 }
 
 
@@ -259,6 +267,7 @@ def _callbacks(node: NodeSection) -> Iterator[CallbackSection]:
         node.clients,
         node.guard_conditions,
         node.action_servers,
+        node.action_clients,
     )
     for group in groups:
         yield from group
@@ -270,6 +279,7 @@ def open_types(nodes: Sequence[NodeSection]) -> Iterator[tuple[TypedMessage, str
         typed: tuple[Sequence[TypedMessage], ...] = (
             *(node.subscriptions, node.publishers, node.services, node.clients),
             node.action_servers,
+            node.action_clients,
         )
         for section in (each for group in typed for each in group):
             stated, bounds = section.type, section.bounds

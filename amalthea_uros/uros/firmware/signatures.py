@@ -7,10 +7,14 @@ from collections.abc import Iterator
 from amalthea_uros.spec.application import Publisher, Subscription
 from amalthea_uros.uros.firmware.entities import CodeHandler, CodeMessage
 
+#: What a callback about a goal is given first: the goal, and whether it is accepted.
+_GOAL = ("rclc_action_goal_handle_t *", "goal")
+_OF_GOALS = {"action_server": [_GOAL], "action_client": [_GOAL, ("bool", "is_accepted")]}
+
 
 def parameters(handler: CodeHandler) -> str:
     """The parameters of a function: its message or goal, and the messages that it fills in."""
-    listed = ["rclc_action_goal_handle_t * goal"] if handler.kind == "action_server" else []
+    listed = [f"{kind} {name}" for kind, name in _OF_GOALS.get(handler.kind, ())]
     listed += [f"{kind} * {message.variable}" for kind, message in _inputs(handler)]
     listed += [f"{message.c_type} * {message.variable}" for message in _outputs(handler)]
     return ", ".join(listed) or "void"
@@ -19,7 +23,7 @@ def parameters(handler: CodeHandler) -> str:
 def arguments(handler: CodeHandler) -> str:
     """The arguments in its callback."""
     received = ["request", "response"] if handler.kind == "service" else ["response" if handler.kind == "client" else "message"]
-    given = ["goal"] if handler.kind == "action_server" else []
+    given = [name for _, name in _OF_GOALS.get(handler.kind, ())]
     given += [f"({kind} *) {name}" for (kind, _), name in zip(_inputs(handler), received, strict=False)]
     return ", ".join([*given, *(f"&{message.variable}" for message in _outputs(handler))])
 

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from amalthea_uros._internal.ports import parameter_services
+from amalthea_uros._internal.ports import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, parameter_services
 from amalthea_uros.spec.application import Application, CallbackSection, MessageCallback, NodeSection, Subscription
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
 from amalthea_uros.uros.application.callbacks import Callback
-from amalthea_uros.uros.application.entities import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES
 from amalthea_uros.uros.application.messages import LONGEST, Message
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.profile import Profile
