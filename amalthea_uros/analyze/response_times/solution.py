@@ -111,7 +111,8 @@ class Solution:
             process = self.context.scheduled[name].process
             # The rounds of an executor are no activations that could be lost.
             if (isinstance(process, Task) and name not in self.context.system.executor_of_task) and (
-                response.worst is None or self.most_pending(name, self.event_models[name], response.worst) > process.activation_limit
+                response.worst is None
+                or self.most_pending(name, self.event_models[name], response.worst) > process.activation_limit
             ):
                 found.append(name)
         return frozenset(found)
