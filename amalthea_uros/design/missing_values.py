@@ -19,7 +19,6 @@ from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call, Execute, walk
 from amalthea_uros.perf.distributions import highest, lowest
-from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
@@ -29,7 +28,7 @@ from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import scheduler_cores, standard_policy
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 if TYPE_CHECKING:
     from amalthea_uros.design.description.origin import DescriptionOrigin
@@ -224,24 +223,15 @@ def _clocks(system: System, settings: Settings) -> Iterator[Change]:
 
 
 def _priorities(analysis: Analysis) -> Iterator[Change]:
-    """Priorities that schedulers need, each another one and none that is used; rate-monotonic, which misses the least.
-
-    They are below those that are stated, if there is room, so that what has a priority does not depend on them.
-    """
+    """Priorities that schedulers need, each another one and none that is used; rate-monotonic, which misses the least."""
     context = analysis.solution.context
-    allocations: dict[str, list[TaskAllocation]] = {}
-    for each in sorted(context.system.mapping.tasks, key=lambda each: _rate(analysis, each.task)):
-        allocations.setdefault(each.scheduler, []).append(each)
-    for here in allocations.values():
-        used = {each.priority for each in here if each.priority is not None}
-        missing = [each.task for each in here if each.priority is None and _needs_priority(context.scheduled.get(each.task))]
-        first = min(used, default=0) - len(missing)
-        unused = (number for number in count(first if first >= 0 else 1) if number not in used)
-        yield from (Change(name, "priority", str(number)) for name, number in zip(missing, unused, strict=False))
-
-
-def _needs_priority(scheduled: ScheduledProcess | None) -> bool:
-    return scheduled is None or scheduled.equal_priority is EqualPriority.UNKNOWN
+    used = {allocation.priority for allocation in context.system.mapping.tasks}
+    unused = (number for number in count(1) if number not in used)
+    for allocation in sorted(context.system.mapping.tasks, key=lambda each: _rate(analysis, each.task)):
+        scheduled = context.scheduled.get(allocation.task)
+        is_needed = scheduled is None or scheduled.equal_priority is EqualPriority.UNKNOWN
+        if allocation.priority is None and is_needed:
+            yield Change(allocation.task, "priority", str(next(unused)))
 
 
 def _rate(analysis: Analysis, task: str) -> Fraction:

@@ -104,18 +104,6 @@ def test_priorities_that_are_proposed_are_rate_monotonic():
     assert found.gained == ("Fast", "Middle")
 
 
-def test_priorities_that_are_proposed_are_below_those_that_are_stated():
-    # Loads of 60 % and 50 %: only one of both can have a bound, and the priority of the other one is stated already.
-    system = of_parts(
-        [replace(task(name, name), activities=(ticks(demand),)) for name, demand in (("Stated", 6), ("Missing", 5))],
-        [TaskAllocation(task="Stated", scheduler="core", priority=1), TaskAllocation(task="Missing", scheduler="core")],
-        [Periodic(name=name, period=10 * MS // 1000) for name in ("Stated", "Missing")],
-        policy=Policy.FIXED_PRIORITY_PREEMPTIVE,
-    )
-    found = missing_values_of(system)
-    assert ([str(change) for change in found.changes], found.gained) == (["Missing.priority=0"], ("Stated",))
-
-
 def test_a_stated_period_says_nothing_of_the_phase():
     """Not an offset of 0, which would make the releases of both tasks known."""
     changed = apply(SYSTEM, Settings(), [parse_change("B.period=2ms")]).system
