@@ -18,7 +18,6 @@ from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Preemption, Process, Task
 from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.time_base import max_time, min_time
-from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models.models import EventModel, can_be_dense
 from amalthea_uros.timing.jobs.executed import states_mean
 from amalthea_uros.timing.response import Claim, Response
@@ -73,20 +72,18 @@ def process_result(name: str, solution: Solution, executor: ExecutorResult | Non
         gap = "" if name in context.demands else context.reasons.get(name, "")
         return of_iterations(found, process, executor, found.deadline, gap)
     if response is None or name in context.with_uncertain_activations or not solution.depends_on_losses(name):
-        return _judged(found, events, context)
+        return _judged(found, events, solution)
     # Without the lost jobs, others can be earlier, but not later.
     bound = replace(found, response=replace(response, claim=Claim.BOUND, best=min(response.best, found.bcet or 0)))
     if solution.follows_losses(name):
-        return _judged(bound, events, context)
+        return _judged(bound, events, solution)
     # Until its first activation is lost, the schedule has all jobs.
-    return replace(_judged(found, events, context), response=bound.response)
+    return replace(_judged(found, events, solution), response=bound.response)
 
 
-def _judged(process: ProcessResult, events: EventModel | None, context: TimingContext) -> ProcessResult:
-    """The result with its verdict; what rounds of executors activate may be activated less often."""
-    model = context.system.processes[process.name]
-    can_borrow, may_be_less = context.can_borrow(process.name), process.name in context.with_uncertain_activations
-    return judged(process, model, evidence_of(process, model, events, can_borrow, may_be_less))
+def _judged(process: ProcessResult, events: EventModel | None, solution: Solution) -> ProcessResult:
+    """The result with its verdict."""
+    return judged(process, solution.context.system.processes[process.name], evidence_of(process, events, solution))
 
 
 def of_iterations(
@@ -157,32 +154,29 @@ def judged(process: ProcessResult, model: Process, evidence: ProcessEvidence) ->
     return replace(process, verdict=found.verdict, failure=found.failure, reason=found.reason or process.reason)
 
 
-def evidence_of(
-    process: ProcessResult, model: Process, events: EventModel | None, can_borrow: bool, may_be_less: bool
-) -> ProcessEvidence:
-    """What is proved of a process by its response time and the event model of its activations.
-
-    Parameters
-    ----------
-    can_borrow : whether it can execute more than what its demand was compared with, so that an overload is not certain
-    may_be_less : whether it may be activated less often, so that neither an overload nor a loss is certain
-    """
-    response = process.response
+def evidence_of(process: ProcessResult, events: EventModel | None, solution: Solution) -> ProcessEvidence:
+    """What is proved of a process by its response time and the event model of its activations."""
+    response, context = process.response, solution.context
     if response is None or events is None:
         return ProcessEvidence(gap=process.reason)
+    # What rounds of executors activate may be activated less often, so that neither an overload nor a loss is certain.
+    may_be_less = process.name in context.with_uncertain_activations
     if response.worst is None:
-        is_certain = response.is_overload and not can_borrow and not may_be_less
+        # It may execute more than what its demand was compared with.
+        is_certain = response.is_overload and not context.can_borrow(process.name) and not may_be_less
         return ProcessEvidence(overload=process.reason) if is_certain else ProcessEvidence(gap=process.reason)
-    loss = lost_jobs(activation_limit(model), pending(process, events)) if isinstance(model, Task) else None
+    model, loss = context.system.processes[process.name], None
+    if isinstance(model, Task):
+        loss = lost_jobs(activation_limit(model), pending(process, events, solution))
     if loss is not None and may_be_less:
         loss = ProvedLoss(loss.reason, is_certain=False)
     return ProcessEvidence(response=process.worst_response, loss=loss)
 
 
-def pending(process: ProcessResult, events: EventModel) -> Ends:
+def pending(process: ProcessResult, events: EventModel, solution: Solution) -> Ends:
     """Between which ends the maximum number of pending jobs lies: the activations while a job of the longest response is pending."""
     ends = process.worst_response
-    upper = None if ends.upper is None else events.eta_plus(ends.upper)
+    upper = None if ends.upper is None else solution.most_pending(process.name, events, ends.upper)
     # Other event models only bound the activations.
     lower = events.eta_plus(ends.lower or 0) if can_be_dense(events) else 1
     return Ends(lower, upper)

@@ -95,6 +95,15 @@ class TestByHand:
         )
         assert worst(analyze_system(model), "P") == 60 + 4 + 3
 
+    def test_who_is_triggered_has_as_many_pending_jobs_as_who_waits_for_them(self):
+        # Q: 20 + 2 * 4. P: 2 + 28 + 3, and 5 of A. By these alone, two triggers can be 50 - (38 - 5) = 17 apart, which is less than
+        # Q takes; but before the second one, P has waited for what the first one started.
+        late = Proc("A", (ticks(5),), 100, priority=9)
+        found = analyze_system(offload(ROUND_TRIP, late, Proc("H", (ticks(4),), 15, priority=9, scheduler="s1"), work=20))
+        assert (worst(found, "Q"), worst(found, "P")) == (28, 38)
+        assert found["Q"].min_interarrival < 28 * US
+        assert (found["Q"].verdict, found["Q"].reason) == (None, "")
+
     def test_a_wait_is_no_execution_time(self):
         found = analyze_system(offload())
         assert (found["P"].bcet, found["P"].wcet) == (5 * US, 5 * US)

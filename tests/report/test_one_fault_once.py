@@ -5,6 +5,8 @@ from io import StringIO
 from pathlib import Path
 
 import pytest
+from hand_made_systems import Proc, ticks
+from hand_made_systems import system as built
 from support import ROOT
 
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -58,6 +60,14 @@ def test_a_report_begins_with_each_cause_once():
     content = compile_report(_without_event_types(text), duration=10**9)
     reasons = [reason for _, reason in opening(content).reasons]
     assert sum("no event type" in reason for reason in reasons) == 1, reasons
+
+
+def test_what_is_not_simulated_for_want_of_a_priority_is_unknown_for_that_already():
+    # 6 us of 8 us, and 3 us of 20 us: the first one as the lowest needs 9 us.
+    tasks = [Proc("T0", (ticks(6),), 8), Proc("T1", (ticks(3),), 20)]
+    reasons = [reason for _, reason in opening(compile_report(built(*tasks), duration=10**9)).reasons]
+    assert reasons[0] == "unknown: it has no priority; as the lowest it needs up to 9 us"
+    assert [reason for reason in reasons if "not simulated" in reason] == ["'T1' is not simulated: it has no priority"]
 
 
 def _without_event_types(text):

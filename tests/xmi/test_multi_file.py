@@ -157,6 +157,38 @@ def test_a_reference_by_href_within_one_file_stays_one(tmp_path):
     assert '<runnable href="amlt:/#Q?type=Runnable"/>' in path.read_text()
 
 
+ID = "_Zp_LgNotEeWXsaNW2kxe8A"
+
+
+def test_an_id_in_another_file_keeps_the_class_that_is_stated(tmp_path):
+    # The declared class is AbstractProcess, which an element cannot have.
+    processes = f'<processes xsi:type="am:Task" href="amlt:/#{ID}"/>'
+    path = tmp_path / "one.amxmi"
+    component = f'<componentsModel>\n    <components name="C">\n      {processes}\n    </components>\n  </componentsModel>'
+    path.write_text(f'<?xml version="1.0" encoding="UTF-8"?>\n{ROOT}\n  {component}\n</am:Amalthea>\n')
+    amuros.save(amuros.load(path), canonical=True)
+    assert processes in path.read_text()
+
+
+def test_a_migration_keeps_the_class_of_an_id_in_another_file(tmp_path):
+    path = tmp_path / "old.amxmi"
+    spaces = " ".join(
+        f'xmlns:{name}="http://www.amalthea.itea2.org/model/1.2.0/{name}"' for name in ("central", "components", "sw")
+    )
+    path.write_text(
+        f"""<?xml version="1.0" encoding="UTF-8"?>
+<central:AMALTHEA xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" {spaces}>
+  <componentsModel>
+    <elements xsi:type="components:Component" name="C"><tasks xsi:type="sw:Task" href="other.amxmi#{ID}"/></elements>
+  </componentsModel>
+</central:AMALTHEA>
+"""
+    )
+    result = amuros.migrate(path)
+    result.save(tmp_path / "new.amxmi")
+    assert f'<processes xsi:type="am:Task" href="amlt:/#{ID}"/>' in (tmp_path / "new.amxmi").read_text()
+
+
 def test_an_object_in_two_files_is_told_and_the_nearer_one_is_meant(folder):
     (folder / "other.amxmi").write_text(SOFTWARE)
     model = amuros.load(folder)

@@ -111,10 +111,25 @@ class Solution:
             process = self.context.scheduled[name].process
             # The rounds of an executor are no activations that could be lost.
             if (isinstance(process, Task) and name not in self.context.system.executor_of_task) and (
-                response.worst is None or self.event_models[name].eta_plus(response.worst) > process.activation_limit
+                response.worst is None
+                or self.most_pending(name, self.event_models[name], response.worst) > process.activation_limit
             ):
                 found.append(name)
         return frozenset(found)
+
+    def most_pending(self, name: str, events: EventModel, worst: Time) -> int:
+        """The maximum number of pending jobs of a process with a bounded response time.
+
+        The bound of a job that waits for one that it has triggered contains the whole response time of that, so that there are no
+        more pending jobs of the second process than of the first one.
+        """
+        most = events.eta_plus(worst)
+        for waiting, process in self.context.waiting.items():
+            triggered = (each.setter for each in process.awaited if each.gap is None)
+            response = self.responses.get(waiting) if name in triggered else None
+            if response is not None and response.worst is not None:
+                most = min(most, self.event_models[waiting].eta_plus(response.worst))
+        return most
 
     @cached_property
     def external_rates(self) -> Mapping[str, Fraction]:

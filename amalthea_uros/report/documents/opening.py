@@ -73,7 +73,9 @@ def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
 
 def _unreported(warnings: Iterable[Finding], rows: Iterable[Judged]) -> Iterator[Finding]:
     """The warnings without those that give the reason of a row, or of another warning, for the same object once more."""
-    reported = {(name, why(row)) for row in rows for name in (row.name, concerned(row))}
+    # Such as "it has no priority; as the lowest it needs up to 9 us".
+    stated = [(row, reason) for row in rows for reason in (why(row), why(row).partition("; ")[0])]
+    reported = {(name, reason) for row, reason in stated for name in (row.name, concerned(row))}
     for warning in warnings:
         # Such as "the chain 'c' is not evaluated: the event has no event type".
         what, _, reason = warning.message.partition(": ")

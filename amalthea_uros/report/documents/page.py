@@ -131,7 +131,7 @@ def _system_section(content: ReportContent) -> Section | None:
     """The tasks on their cores, and the flows between them."""
     if not content.system.processes:
         return None
-    lead = "Boxes are tasks and interrupts on their cores, the most urgent first; arrows are data and triggers, coloured lines chains."
+    lead = "Boxes are tasks and interrupts on their cores, the most urgent first. Arrows are data and triggers, coloured ones chains."
     return Section("system", "System", lead, [Figure("system", draw_system(content.system, content.analysis))])
 
 

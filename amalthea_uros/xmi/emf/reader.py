@@ -69,6 +69,7 @@ class ReadResult(NamedTuple):
     referables : every object that can be referred to
     xmi_ids : the `xmi:id` of every object that has one
     href_content : what is inside an `href` element, by the object that refers, the feature and the number of the element
+    href_types : the classes that `href` elements state, by their texts
     findings : problems that did not prevent reading
     """
 
@@ -77,6 +78,7 @@ class ReadResult(NamedTuple):
     referables: list[Element]
     xmi_ids: list[tuple[Element, str]]
     href_content: Mapping[tuple[Element, str, int], list[str]]
+    href_types: Mapping[str, str]
     findings: list[Finding]
 
 
@@ -141,6 +143,7 @@ class _ModelReader:
         #: The same for what is inside `href` elements, and the key of the last one of these.
         self.href_content: dict[tuple[Element, str, int], list[str]] = {}
         self.href: tuple[Element, str, int] | None = None
+        self.href_types: dict[str, str] = {}
         self.prolog: list[str] = []
         self.epilog: list[str] = []
         self.skipped_depth = 0
@@ -182,7 +185,9 @@ class _ModelReader:
         document.prolog, document.epilog = self.prolog, self.epilog
         document.namespaces = header.namespaces
         findings = [collected.finding(self.path, source) for collected in self.collector]
-        return ReadResult(document, self.references, self.referables, self.xmi_ids, self.href_content, findings)
+        return ReadResult(
+            document, self.references, self.referables, self.xmi_ids, self.href_content, self.href_types, findings
+        )
 
     @cached_property
     def encoded(self) -> bytes:
@@ -230,7 +235,7 @@ class _ModelReader:
                 return
             type_name = attributes.pop(xsi_type, None)
             if feature.is_reference:
-                self.start_href(stack[-1], feature, attributes)
+                self.start_href(stack[-1], feature, attributes, type_name)
                 return
             if foreign_prefix and type_name is not None:
                 type_name = TYPE_PREFIX + type_name.removeprefix(foreign_prefix)
@@ -315,13 +320,15 @@ class _ModelReader:
 
         return end
 
-    def start_href(self, frame: Frame, feature: FeaturePlan, attributes: dict[str, str]) -> None:
+    def start_href(self, frame: Frame, feature: FeaturePlan, attributes: dict[str, str], type_name: str | None) -> None:
         """A reference to another file: `<task href="amlt:/#T?type=Task"/>`."""
         href = attributes.get("href")
         if href is None or len(attributes) > 1:
             self.start_unknown(feature.xml_name)
             return
         text = href.partition("#")[2] or href
+        if type_name is not None:
+            self.href_types[text] = type_name.rpartition(":")[2]
         holder, _, _, held = frame
         texts = held.get(feature.name)
         if texts is None:

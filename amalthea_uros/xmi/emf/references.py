@@ -190,10 +190,11 @@ class _Resolver:
         }
 
     def proxy(self, text: str, feature: FeaturePlan) -> Element:
-        """The unresolved proxy for a text, of the class that the text names, or else of the class that the feature expects."""
+        """The unresolved proxy for a text, of the class that the text or its `href` names, or else of the one of the feature."""
         name, mark, class_name = text.rpartition(TYPE_MARK)
-        document_plans = [plans(result.document.facts_version) for result in self.results]
-        plan = document_plans[0].of(class_name) if mark else None
+        if not mark:
+            class_name = next((result.href_types[text] for result in self.results if text in result.href_types), "")
+        plan = plans(self.results[0].document.facts_version).of(class_name)
         cls = plan.cls if plan and issubclass(plan.cls, feature.target) else feature.target
         found = self.proxies.get((text, cls))
         if found is None:

@@ -11,7 +11,7 @@ from amalthea_uros.xmi.emf.escape import escape
 from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.emf.reader import ReadResult, read_events
 from amalthea_uros.xmi.emf.versions import ITEA
-from amalthea_uros.xmi.tree.classes import reference_text
+from amalthea_uros.xmi.tree.classes import local_name, reference_text
 from amalthea_uros.xmi.tree.model_set import ModelSet, Origins, Tree
 from amalthea_uros.xmi.tree.node import Node
 
@@ -201,21 +201,21 @@ class TreeEvents:
 
         return report
 
-    def refer(self, node: Node) -> list[tuple[str, str]]:
+    def refer(self, node: Node) -> list[tuple[str, dict[str, str]]]:
         """Write the references of a node as attributes; those that must be elements, because a target is in another file."""
-        hrefs: list[tuple[str, str]] = []
+        hrefs: list[tuple[str, dict[str, str]]] = []
         for name, targets in node.references.items():
             texts, is_local = self.texts.of_targets(targets, self.tree.root)
             if is_local:
                 node.attributes[name] = texts[0] if len(texts) == 1 else " ".join(texts)
             else:
-                hrefs += [(name, text) for text in texts]
+                hrefs += [(name, _href(target, text)) for target, text in zip(targets, texts, strict=True)]
         return hrefs
 
-    def report_hrefs(self, hrefs: list[tuple[str, str]]) -> None:
+    def report_hrefs(self, hrefs: list[tuple[str, dict[str, str]]]) -> None:
         """Report references as elements, at the present place."""
-        for name, text in hrefs:
-            self.StartElementHandler(name, {"href": "amlt:/#" + text})
+        for name, attributes in hrefs:
+            self.StartElementHandler(name, attributes)
             self.EndElementHandler(name)
 
     def outside(self, comments: list[str]) -> None:
@@ -226,3 +226,9 @@ class TreeEvents:
             else:
                 target, _, data = text[2:-2].partition(" ")
                 self.ProcessingInstructionHandler(target, data)
+
+
+def _href(target: Node, text: str) -> dict[str, str]:
+    """The attributes of a reference as an element, with the class of a target that is in no file if the old reference states it."""
+    stated = target.get("class") if target.is_proxy else ""
+    return {"href": "amlt:/#" + text} | ({"xsi:type": f"am:{local_name(stated)}"} if stated else {})

@@ -1,0 +1,80 @@
+"""The challenge model of 2019, as its first solution mapped it: four tasks wait for a graphics processor or for another task.
+
+The figures are those of the timing analysis in the MobSTr dataset (org.panorama-research.mobstr.analysis/cloud-based_analysis/
+dse_analysis/results.json, commit b2eaf82), by the tool of L. Krawczyk, M. Bazzal, R. P. Govindarajan and C. Wolff, "An analytical
+approach for calculating end-to-end response times in autonomous driving applications", WATERS 2019. They are of another mapping,
+so that only tasks on the same type of core and with the same tasks above them can be compared. The file has no event chains.
+"""
+
+from functools import cache
+
+import pytest
+from support import SHARED
+
+from amalthea_uros import analyze_system, extract, load
+from amalthea_uros.design.changes.apply import apply
+from amalthea_uros.design.changes.change import parse_change
+from amalthea_uros.timing.basics.settings import Settings
+
+FOLDER = SHARED / "corpus" / "panorama-research+mobstr-dataset" / "org.panorama-research.mobstr.amalthea"
+MODEL = FOLDER / "mapped+safety" / "mobstr-mapped+safety.amxmi"
+NS = 1000
+#: Times between which a job executes, in nanoseconds, cut off to whole ones; parts of a task that waits are added. Each part before
+#: a wait has 2500 ns for offloading, which the file has in `PRE_Detection_gpu_POST` only.
+EXECUTION_TIMES = {
+    "DASM": (1_299_995, 1_859_995),
+    "EKF": (3_979_670, 4_759_670),
+    "CANbus_polling": (399_680, 599_680),
+    "OS_Overhead": (50_000_000, 50_000_000),
+    "SFM": (7_049_999, 7_899_999),
+    "Detection": (107_999_999, 115_999_999),
+    "PRE_SFM_gpu_POST": (2_578_212 - 2_500 + 2_834_784, 3_180_071 - 2_500 + 3_532_258),
+    "PRE_Detection_gpu_POST": (3_191_780 + 820_000, 3_692_060 + 1_020_000),
+}
+#: Worst response times in nanoseconds, with 3520 ns for each access to a label, which the execution times do not have.
+RESPONSE_TIMES = {"DASM": (1_874_075, 4), "EKF": (5_394_550, 10), "CANbus_polling": (603_200, 1)}
+
+#: The policy of the graphics processor has no name; another analysis in the dataset (rtana2sim) takes it for one by priorities,
+#: with `SFM` above `Detection`.
+BY_PRIORITY = ("GPU_Sched.policy=FixedPriorityPreemptive", "Detection.priority=0")
+
+pytestmark = pytest.mark.skipif(not MODEL.exists(), reason="the challenge is not at hand")
+
+
+@cache
+def analysed(*changes):
+    system = extract(load(MODEL)).system
+    return analyze_system(*apply(system, Settings(), [parse_change(change) for change in changes]))
+
+
+@pytest.mark.parametrize("task", EXECUTION_TIMES)
+def test_execution_times_are_those_of_the_published_analysis(task):
+    process = analysed(*BY_PRIORITY)[task]
+    # Each of two parts can be cut off, and is rounded.
+    assert [process.bcet / NS, process.wcet / NS] == pytest.approx(EXECUTION_TIMES[task], abs=2)
+
+
+@pytest.mark.parametrize("task", RESPONSE_TIMES)
+def test_response_times_are_those_of_the_published_analysis(task):
+    published, accesses = RESPONSE_TIMES[task]
+    assert analysed()[task].response.worst / NS == published - 3520 * accesses
+
+
+def test_waits_for_the_graphics_processor_are_bounded_once_its_policy_is_stated():
+    found = analysed(*BY_PRIORITY)
+    assert found["SFM"].response.worst == 7_900_000 * NS
+    # Nothing preempts it, nor `SFM`.
+    assert found["PRE_SFM_gpu_POST"].response.worst / NS == pytest.approx(3_177_571 + 7_900_000 + 3_532_258, abs=2)
+    # Five jobs of `SFM`, whose activations vary by less than the 9.5 ms that are left of 5 * 33 ms.
+    assert found["Detection"].response.worst / NS == 116_000_000 + 5 * 7_900_000
+    # A job of `Lidar_Grabber` before each part.
+    lidar = found["Lidar_Grabber"].wcet / NS
+    expected = 4_712_060 + 155_500_000 + 2 * lidar
+    assert found["PRE_Detection_gpu_POST"].response.worst / NS == pytest.approx(expected, abs=2)
+    assert [found[name].verdict for name in ("PRE_SFM_gpu_POST", "PRE_Detection_gpu_POST")] == ["met", "met"]
+
+
+@pytest.mark.parametrize("task", ["Localization", "Lane_detection"])
+def test_who_polls_for_a_task_of_its_own_priority_on_its_core_waits_for_ever(task):
+    reason = analysed(*BY_PRIORITY)[f"PRE_{task}_gpu_POST"].reason
+    assert reason.endswith(f"it polls for that on the same core, where '{task}' cannot preempt it, and so never sets it")
