@@ -245,6 +245,8 @@ def _loop_item(item: CodeLoopItem, owner: CodeExecutor | None, names: CodeNames)
         return f"{item.kind}: {GAP if topic is None else f'[{quoted(topic)}]'}{comment}"
     if item.kind is CodeLoopKind.SPIN and (owner is None or item.of != owner.key):
         return f"{{{item.kind}: {_time(item.time)}, executor: {quoted(names.executors[item.of])}}}{comment}"
+    if item.attempts > 1:
+        return f"{{{item.kind}: {_time(item.time)}, attempts: {item.attempts}}}{comment}"
     return f"{item.kind}: {_time(item.time)}{comment}"
 
 

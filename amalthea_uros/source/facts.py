@@ -142,6 +142,7 @@ class CodeLoopItem:
     time : timeout, or how long it waits; None if it is not constant, or does not always happen
     of : key of the executor that spins, or of the publisher
     note : what to know about it
+    attempts : how often it asks at most in its time
     """
 
     kind: CodeLoopKind
@@ -149,6 +150,7 @@ class CodeLoopItem:
     place: Location
     of: str = ""
     note: str = ""
+    attempts: int = 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

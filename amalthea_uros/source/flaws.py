@@ -310,7 +310,7 @@ def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
             continue
         reported.add(call.place)
         if call.place in described:
-            message = f"'{entity.variable}' {_VERBS[call.name]} in a loop, outside of callbacks: how long that takes is unknown"
+            message = f"'{entity.variable}' {_VERBS[call.name]} in a loop, outside of callbacks: that delays every iteration"
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
         elif call.place in published and call.loops and any(call.root.scope == scope for scope in facts.publishes if call.root):
             message = (

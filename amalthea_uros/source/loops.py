@@ -160,7 +160,8 @@ def _item(facts: CodeFacts, call: FunctionCall) -> CodeLoopItem | None:
         return _wait(wait_of(call, facts), call)
     if call.name in _AGENT:
         kind, position = _AGENT[call.name]
-        return CodeLoopItem(kind=kind, time=_answer(call, position), place=call.place)
+        attempts = 1 if position is None else _number(call, position)
+        return CodeLoopItem(kind=kind, time=_answer(call, attempts), place=call.place, attempts=attempts or 1)
     if call.name in SENDS and (sender := call.argument(0)) is not None:
         return CodeLoopItem(kind=CodeLoopKind.PUBLISH, time=None, place=call.place, of=sender.key)
     if SPIN_KINDS.get(call.name) is SpinKind.SOME and (executor := executor_of(facts, call)) is not None:
@@ -177,8 +178,10 @@ def _wait(wait: WaitCall, call: FunctionCall) -> CodeLoopItem | None:
 
 def _answer(call: FunctionCall, attempts: int | None) -> Time | None:
     """The longest time until an answer of the agent comes, or none."""
-    given, number = call.argument(0), call.argument(attempts) if attempts is not None else None
-    once, times = given.number if given is not None else None, number.number if number is not None else None
-    if attempts is None:
-        times = 1
-    return None if once is None or times is None or once < 0 or times < 0 else Time(once * times * MILLISECOND)
+    once = _number(call, 0)
+    return None if once is None or attempts is None or once < 0 or attempts < 0 else Time(once * attempts * MILLISECOND)
+
+
+def _number(call: FunctionCall, position: int) -> int | None:
+    given = call.argument(position)
+    return None if given is None else given.number

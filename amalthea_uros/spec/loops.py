@@ -27,9 +27,9 @@ class LoopItem(DescriptionSection):
     publish: Annotated[list[Name], Limits(min_length=1)] | None = None
     """Topics on which it publishes outside of callbacks, each at most once in an iteration."""
     ping: Offset | None = None
-    """Timeout of each attempt of `rmw_uros_ping_agent`."""
+    """Longest time of `rmw_uros_ping_agent`: its timeout times its attempts."""
     attempts: Count | None = None
-    """Attempts of `rmw_uros_ping_agent`; default: 1."""
+    """Attempts of `rmw_uros_ping_agent` in that time; default: 1."""
     sync: Offset | None = None
     """Timeout of `rmw_uros_sync_session`."""
     every: Duration | None = None

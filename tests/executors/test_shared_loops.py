@@ -149,7 +149,7 @@ def test_a_loop_waits_for_the_answer_of_the_agent(item, answer):
 
 def test_a_ping_without_an_answer_takes_its_timeouts():
     # Nothing is known of the agent: three attempts of 100 ms, each of which can last 100 ms longer.
-    text = with_item("{ping: 100 ms, attempts: 3}").replace(", acknowledgement: {min: 200 us, max: 800 us}", "")
+    text = with_item("{ping: 300 ms, attempts: 3}").replace(", acknowledgement: {min: 200 us, max: 800 us}", "")
     (handle,) = analyze(text).executors["e0_sends"].handles
     assert 600 * MS <= handle.response.worst <= 601 * MS
 

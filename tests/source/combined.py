@@ -228,7 +228,7 @@ LOOPS = (
     LoopParts(
         "ping",
         f"    if (RMW_RET_OK != rmw_uros_ping_agent(50, 3)) {{ connected = false; }}\n{SPIN}\n    WAIT",
-        ("ping: 150 ms", "spin_some: 10 ms", "WAIT"),
+        ("{ping: 150 ms, attempts: 3}", "spin_some: 10 ms", "WAIT"),
     ),
     LoopParts("sync", f"{SPIN}\n    rmw_uros_sync_session(1000);\n    WAIT", ("spin_some: 10 ms", "sync: 1 s", "WAIT")),
     LoopParts(

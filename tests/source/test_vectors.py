@@ -73,8 +73,8 @@ KNOWN = VALUES | {
     "transport": "{serial: {baud_rate: 115200}, acknowledgement: 2 ms}",
 }
 AGENT = "middleware:\n  agent: {to_controller: {min: 0.1 ms, max: 1 ms}, to_host: {min: 0.1 ms, max: 1 ms}}\n"
-#: Why a callback has no bound: its thread shares the session with one that publishes at any time; the delays of Wi-Fi are unknown.
-WITHOUT_BOUND = {"publish-from-second-task.c": ["on_cmd"], "arduino-wifi.ino": ["on_cmd"]}
+#: A callback has no bound where the delays of Wi-Fi are unknown.
+WITHOUT_BOUND = {"arduino-wifi.ino": ["on_cmd"]}
 
 
 @pytest.mark.parametrize("name", sorted(EXPECTED.keys() - {TOO_LONG}))

@@ -90,7 +90,7 @@ class _ThreadCallbacks:
         if not self.profile.replies_to_pings:
             text = f"{self.profile.title} has no {asked}"
             self.findings.error("APP003", text, item.location(), "Remove the item, or set another middleware.")
-        attempts, once = item.attempts or 1, item.ping if item.ping is not None else item.sync
+        attempts, longest = item.attempts or 1, item.ping if item.ping is not None else item.sync
         yield Message(
             callback=name,
             topic=name,
@@ -100,7 +100,7 @@ class _ThreadCallbacks:
             reliable=False,
             origin=item.location(),
             attempts=attempts,
-            timeout=attempts * ((once or 0) + self.profile.replies_late),
+            timeout=(longest or 0) + attempts * self.profile.replies_late,
         )
 
 
