@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1045,
     "_version": 1,
     "am": 2,
-    "analyze": 8867,
+    "analyze": 8876,
     "bridge": 2867,
     "cli": 2497,
     "compare": 3862,
