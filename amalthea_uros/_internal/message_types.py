@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros._internal.resources import parsed_yaml
+from amalthea_uros._internal.resources import yaml_data
 
 LENGTHS = {
     **dict.fromkeys(("bool", "byte", "char", "int8", "uint8"), 1),
@@ -110,7 +110,7 @@ class _Known(NamedTuple):
 
 @cache
 def _types() -> dict[str, str]:
-    packages = parsed_yaml(files(__package__).joinpath("message_types.yaml").read_text(encoding="utf-8"))
+    packages = yaml_data(Path(__file__).with_name("message_types.yaml"))
     return {f"{package}/{name}": fields for package, types in packages.items() for name, fields in types.items()}
 
 

@@ -12,7 +12,7 @@ from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import RelativePeriodic
-from amalthea_uros.timing.activation.load import CoreLoad, certain_loads, suppressible
+from amalthea_uros.timing.activation.load import CoreLoad
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.job_paths import JobDemand
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
@@ -36,7 +36,7 @@ def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
     }
     certain: Mapping[str, Fraction] = {}
     if len(known) < len(context.system.cores):
-        certain = _certain_loads(allocated_cores(context.system), context)
+        certain = solution.certain_loads_of(allocated_cores(context.system))
     for core in context.system.cores:
         best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
         yield ProcessorResult(
@@ -47,11 +47,6 @@ def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
             worst=worst,
             at_least=certain.get(core, Fraction(0)) if worst is None else _certain_load(context.on_core(core), core, solution),
         )
-
-
-def _certain_loads(cores: Mapping[str, frozenset[str]], context: TimingContext) -> Mapping[str, Fraction]:
-    uncertain = {*context.with_uncertain_activations, *suppressible(context.system, context.activations)}
-    return certain_loads(cores, context.activations, context.demand_model, uncertain)
 
 
 def _certain_overload(name: str, solution: Solution) -> Response | None:
@@ -65,12 +60,14 @@ def _certain_overload(name: str, solution: Solution) -> Response | None:
     item = context.scheduled.get(name)
     if item is None or not solution.is_known(name) or item.equal_priority is not EqualPriority.FIFO:
         return None
+    if solution.certain_loads.get(item.core, 0) <= 1:
+        return None  # a part of the processes of a core needs no more than all of them
     level = [other for other in context.on_core(item.core) if other.rank >= item.rank]
     names = {other.name for other in level}
     causing = reached(names, context.activations.triggering)
     if any(other.server is not None for other in level) or not names.issuperset(causing):
         return None
-    load = _certain_loads(dict.fromkeys(names, frozenset((item.core,))), context).get(item.core, Fraction(0))
+    load = solution.certain_loads_of(dict.fromkeys(names, frozenset((item.core,)))).get(item.core, Fraction(0))
     if load <= 1:
         return None
     reason = f"overload: tasks at this priority or higher need at least {percent_text(load, 1)} % of the core"

@@ -21,12 +21,22 @@ from amalthea_uros.units import Rounding, rounded_time_text
 METRICS_OF_ITERATIONS = (JobMetric.RESPONSE_TIME, JobMetric.NET_EXECUTION_TIME)
 
 
-def process_results(solution: Solution, executors: Results[ExecutorResult]) -> Iterator[ProcessResult]:
-    """The results of all processes."""
+def process_results(
+    solution: Solution, executors: Results[ExecutorResult], known: Mapping[str, ProcessResult]
+) -> Iterator[ProcessResult]:
+    """The results of all processes.
+
+    Parameters
+    ----------
+    known : those that need not be found again
+    """
     system = solution.context.system
     metrics, needs = MetricEvaluator(solution), Needs(solution.context)
     by_task = {executor.task: executor for executor in executors}
     for name in system.processes:
+        if name in known:
+            yield known[name]
+            continue
         result = _with_order(process_result(name, solution, by_task.get(name)), solution)
         if name in by_task:
             kept = _of_iterations(metrics.of(result), by_task[name], system.executor_of_task[name])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros.analyze.callbacks import CallbackEvaluator
@@ -19,7 +20,7 @@ from amalthea_uros.analyze.process_results import process_results
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
-from amalthea_uros.analyze.results.processes import ProcessorResult
+from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.system import System
@@ -87,7 +88,10 @@ def _of_all_phases(
     # Loads are those of whole cycles, whatever the phases.
     loads: Results[ProcessorResult] | None = None
     for number, each in cases.solutions(cases.of_everything()):
-        analyses[number] = _analysis(each, budget, executors, crossing, loads)
+        same = {
+            name: analyses[0].processes[name] for name, of_process in cases.of_processes.items() if number not in of_process
+        }
+        analyses[number] = _analysis(each, budget, executors, crossing, loads, same)
         loads = analyses[number].processors
         if not is_wanted(analyses[number]):
             return None, False
@@ -100,6 +104,7 @@ def _analysis(
     executors: Results[ExecutorResult],
     crossing: Results[ChainResult],
     loads: Results[ProcessorResult] | None = None,
+    same: Mapping[str, ProcessResult] = MappingProxyType({}),
 ) -> Analysis:
     """The analysis of a system; chains are evaluated for all phases of the jobs that they pass, other unknown phases are any job.
 
@@ -108,12 +113,13 @@ def _analysis(
     executors : those that spin in loops, for all phases
     crossing : the chains that cross wires, the agent or executors in loops, for all phases
     loads : of the cores; None if they are not known yet
+    same : for phases of which some are evaluated already that are the same to these processes: results for any phase
     """
     context = solution.context
     system = context.system
     note_ignored(solution)
     evaluation = ChainEvaluator(solution, budget)
-    processes = Results(process_results(solution, executors))
+    processes = Results(process_results(solution, executors, same))
     callbacks = Results(CallbackEvaluator(solution, executors).all())
     known = {chain.name: chain for chain in crossing}
     chains = Results(known.get(chain.name) or over_all_phases(chain, evaluation) for chain in system.events.chains)

@@ -6,7 +6,6 @@ import json
 import re
 from collections.abc import Iterable
 from functools import lru_cache
-from hashlib import sha256
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, read_text
@@ -34,6 +33,8 @@ def _ignored_in(line: str) -> frozenset[str]:
 
 def fingerprint(finding: Finding) -> str:
     """A digest of a finding that does not change when lines move."""
+    from hashlib import sha256  # loads a large library
+
     return sha256(f"{finding.rule}|{finding.object}|{finding.message}".encode(errors="backslashreplace")).hexdigest()[:32]
 
 

@@ -20,7 +20,7 @@ def shown_findings(findings: Iterable[Finding], assembly: Assembly | None, analy
     ----------
     assembly : of the system of the analysis; None if no description says how large the memory is
     """
-    if assembly is None:
+    if assembly is None or not analysis.findings:
         return unsuppressed((*findings, *analysis.findings))
     from amalthea_uros.services.waiting_messages import findings_of
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.paths import StrPath, is_description
@@ -89,6 +88,8 @@ def _write_edited(opened: SystemInput, changes: Sequence[Change], settings: Sett
 
 
 def _copied(model: Model) -> Model:
+    from tempfile import TemporaryDirectory
+
     from amalthea_uros.xmi.load import load
     from amalthea_uros.xmi.save import save
 

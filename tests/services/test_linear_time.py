@@ -2,7 +2,7 @@
 
 import pytest
 
-from amalthea_uros import load
+from amalthea_uros import build, diff, load, simulate, sweep
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.check import check_files
 from amalthea_uros.services.format import format_files
@@ -109,3 +109,34 @@ def test_formatting(name, tmp_path):
 @pytest.mark.parametrize("name", DESCRIPTIONS)
 def test_checking_descriptions(name, tmp_path):
     assert growth(lambda path: check_files([path]), files(tmp_path, DESCRIPTIONS[name], ".yaml")) < 2.5
+
+
+#: An exponent of 1.1 of a polynomial.
+ALMOST_LINEAR = 2**1.1
+COMMANDS = {
+    "analyze": lambda path: analyze_files([path]),
+    "build": build,
+    "simulate": lambda path: simulate(path, "10 ms"),
+    "sweep": lambda path: sweep(path, ["t0.execution_time=1us,2us"]),
+}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_commands_on_many_tasks(command, tmp_path):
+    paths = [tmp_path / f"{size}.yaml" for size in (10, 20, 40)]
+    for path in paths:
+        timers = repeated("{name: t#, period: 100 ms, execution_time: 1 us}", int(path.stem), ", ")
+        application = f"application: {{nodes: [{{name: n, timers: [{timers}]}}]}}\n"
+        path.write_text(f"{DESCRIPTION}hardware: {{platform: single-core}}\n{application}")
+    assert growth(COMMANDS[command], paths) < ALMOST_LINEAR
+
+
+def test_comparing_models_of_which_each_object_differs(tmp_path):
+    def labels(value):
+        return lambda count: repeated(f'<labels name="L#" constant="{value}"/>', count)
+
+    pairs = []
+    for value in ("true", "false"):
+        (tmp_path / value).mkdir()
+        pairs.append(files(tmp_path / value, labels(value)))
+    assert growth(lambda pair: diff(*pair), list(zip(*pairs, strict=True))) < ALMOST_LINEAR

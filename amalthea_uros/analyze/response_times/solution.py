@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
+from amalthea_uros.timing.activation.load import certain_loads, suppressible
 from amalthea_uros.timing.basics.time_base import min_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models.models import EventModel
@@ -74,6 +75,21 @@ class Solution:
         if task not in self._threads:
             self._threads[task] = ExecutorThread.of(task, self)
         return self._threads[task]
+
+    def certain_loads_of(self, cores: Mapping[str, frozenset[str]]) -> Mapping[str, Fraction]:
+        """The worst-case load of each core by some processes, as far as it is certain; by the cores on which each can run."""
+        return certain_loads(cores, self.context.activations, self.context.demand_model, self._activated_less_often)
+
+    @cached_property
+    def certain_loads(self) -> Mapping[str, Fraction]:
+        """The same by all processes with a single core."""
+        return self.certain_loads_of({item.name: frozenset((item.core,)) for item in self.context.scheduled.values()})
+
+    @cached_property
+    def _activated_less_often(self) -> frozenset[str]:
+        """The processes that may be activated less often than their stimuli say."""
+        context = self.context
+        return context.with_uncertain_activations | suppressible(context.system, context.activations)
 
     def mark_unknown(self, name: str, reason: str) -> None:
         """Record why the response time of a process is unknown."""

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from math import prod
-from random import Random
 from typing import NamedTuple, TypeAlias
 
 from amalthea_uros._internal.records import dataclass
@@ -188,6 +187,8 @@ def sampled(sweeps: Sequence[Sweep], count: int, seed: int) -> Iterator[tuple[Ch
     ------
     InvalidArgumentError : two sweeps of the same property.
     """
+    from random import Random  # imports eight other modules
+
     total = combinations(sweeps)
     numbers = range(total) if count >= total else sorted(Random(seed).sample(range(total), count))
     return (_variant(sweeps, number) for number in numbers)

@@ -66,7 +66,7 @@ ASSUMPTION = (
 
 def has_overhead_of_tasks(system: System) -> bool:
     """Whether tasks execute work of the operating system."""
-    return any(task.name in processes_with_overhead(system) for task in system.software.tasks)
+    return not processes_with_overhead(system).isdisjoint(task.name for task in system.software.tasks)
 
 
 def processes_with_overhead(system: System) -> frozenset[str]:

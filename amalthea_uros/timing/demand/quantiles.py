@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor, isfinite
-from statistics import NormalDist
 
 from amalthea_uros.perf.activities import Activity, Execute, ExecutionNeed
 from amalthea_uros.perf.distributions import Distribution, Gauss
@@ -54,6 +53,8 @@ def bounded(distribution: Distribution[int], probability: Fraction) -> Distribut
     """A distribution of ticks with quantiles in place of the bounds that it does not have."""
     match distribution:
         case Gauss(mean=mean, deviation=deviation, lower=lower, upper=upper) if isfinite(mean) and isfinite(deviation):
+            from statistics import NormalDist  # imports five other modules
+
             distance = -NormalDist().inv_cdf(float(probability)) * abs(deviation) * _MARGIN
             least = max(0, floor(mean - distance)) if lower is None else lower
             return replace(distribution, lower=least, upper=ceil(mean + distance) if upper is None else upper)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from functools import cache
-from importlib import resources
+from pathlib import Path
 from typing import Any, Self
 
 from amalthea_uros._internal.records import dataclass, fields
-from amalthea_uros._internal.resources import parsed_yaml
+from amalthea_uros._internal.resources import yaml_data
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.middleware import Middleware, PoolSizes
@@ -132,14 +132,13 @@ class Option(OptionRow):
 
 
 @cache
-def option_rows(folder: str) -> Mapping[str, OptionRow]:
+def option_rows(folder: Path) -> Mapping[str, OptionRow]:
     """The build options of a middleware by name, in the order of its table.
 
     Parameters
     ----------
-    folder : the package with its `options.yaml`
+    folder : that of the middleware, with its `options.yaml`
     """
-    text = resources.files(folder).joinpath("options.yaml").read_text(encoding="utf-8")
     return {
         row["name"]: OptionRow(
             **(
@@ -151,7 +150,7 @@ def option_rows(folder: str) -> Mapping[str, OptionRow]:
                 }
             )
         )
-        for group in parsed_yaml(text)
+        for group in yaml_data(folder / "options.yaml")
         for row in group["options"]
     }
 

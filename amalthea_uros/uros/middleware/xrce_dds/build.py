@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from amalthea_uros._internal.ports import Port, known_ports
 from amalthea_uros._internal.records import dataclass
@@ -16,7 +17,7 @@ _INPUT, _OUTPUT = "RMW_UXRCE_STREAM_HISTORY_INPUT", "RMW_UXRCE_STREAM_HISTORY_OU
 
 def rows() -> Mapping[str, OptionRow]:
     """The table of options."""
-    return option_rows(__name__.rpartition(".")[0])
+    return option_rows(Path(__file__).parent)
 
 
 @dataclass(frozen=True, slots=True)

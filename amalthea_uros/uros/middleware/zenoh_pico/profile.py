@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import repeat
+from pathlib import Path
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.network import Direction
@@ -78,7 +79,7 @@ class ZenohPico(Profile):
     @property
     def option_table(self) -> Mapping[str, OptionRow]:
         """What is known of its build options."""
-        return option_rows(__name__.rpartition(".")[0])
+        return option_rows(Path(__file__).parent)
 
     def parts(self, kind: MessageKind, content: int, *, reliable: bool) -> Sequence[MessagePart]:
         """What is sent for a message, without the length that precedes it on TCP."""
