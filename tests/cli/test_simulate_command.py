@@ -201,9 +201,12 @@ def test_a_run_that_fails_has_its_error_in_the_table(run, tmp_path):
 
 
 def test_ctrl_c_keeps_the_runs_that_are_finished(run, tmp_path):
+    (tmp_path / "t.json").write_text("a full table")
     code, output, errors = run(ADVANCED, "--seed", 10, "--runs", 9, "--jobs", 1, "--table", tmp_path / "t.json")
     assert code == 130
-    assert [row["seed"] for row in json.loads((tmp_path / "t.json").read_text())] == [10, 11, 12]
+    assert (tmp_path / "t.json").read_text() == "a full table"
+    assert [row["seed"] for row in json.loads((tmp_path / "t.partial.json").read_text())] == [10, 11, 12]
+    assert f"the table is not complete; it is in {tmp_path / 't.partial.json'}" in errors
     assert "interrupted: 3 of 9 runs finished" in errors
     assert "Observed in 3 of 9 runs" in output
 

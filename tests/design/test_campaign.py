@@ -273,6 +273,18 @@ def test_an_interrupted_campaign_without_a_result_keeps_the_former_table(tmp_pat
     assert (tmp_path / "t.csv").read_text() == "run,seed\n1,1\n"
 
 
+@pytest.mark.parametrize("is_there", [False, True])
+def test_a_table_that_is_not_complete_is_written_beside_the_former_one(is_there, tmp_path):
+    former = {"t.csv": "run,seed\n1,1\n"} if is_there else {}
+    for name, text in former.items():
+        (tmp_path / name).write_text(text)
+    assert write_table(tmp_path / "t.csv", [], is_complete=False) is None
+    assert write_table(tmp_path / "t.csv", ROWS[:1], is_complete=False) == tmp_path / "t.partial.csv"
+    lines = {each.name: each.read_text() for each in tmp_path.iterdir()}
+    assert lines.pop("t.partial.csv").splitlines()[0] == "run,seed,a,b,c"
+    assert lines == former
+
+
 def test_a_table_that_cannot_be_written(tmp_path, monkeypatch):
     with pytest.raises(InvalidArgumentError, match=r"expected one of \.csv, \.json, \.parquet"):
         table_format(tmp_path / "t.xlsx")
