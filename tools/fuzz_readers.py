@@ -39,6 +39,7 @@ from amalthea_uros.services.import_code import import_code
 from amalthea_uros.services.import_recording import import_recording
 from amalthea_uros.services.subject import open_system
 
+#: Of processor time, so that it does not matter what else the computer does.
 _SECONDS = 10
 #: Files of text whose structure is known.
 _STRUCTURED = (".amxmi", ".iprx", ".yaml", ".yml", ".c", ".cpp", ".ino", ".dbc", ".idl", ".msg", ".meta")
@@ -50,7 +51,7 @@ _ACCEPTED, _REFUSED = "read", "refused"
 def main() -> None:
     options = _options()
     known: set[str] = set()
-    signal.signal(signal.SIGALRM, _late)
+    signal.signal(signal.SIGPROF, _late)
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     with tempfile.TemporaryDirectory() as folder:
         for name in options.readers or READERS:
@@ -103,7 +104,7 @@ def _mutated(rng: Random, suffix: str, content: bytes, other: bytes) -> bytes:
 
 def _outcome(read: Callable[[Path], object], path: Path) -> str:
     """Whether a file was read or refused; else why the reader failed, and where in the code."""
-    signal.alarm(_SECONDS)
+    signal.setitimer(signal.ITIMER_PROF, _SECONDS)
     try:
         read(path)
     except (AmurosError, InvalidArgumentError):
@@ -112,7 +113,7 @@ def _outcome(read: Callable[[Path], object], path: Path) -> str:
         frame = [each for each in extract_tb(error.__traceback__) if "amalthea_uros" in each.filename][-1]
         return f"{type(error).__name__} at {Path(frame.filename).name}:{frame.lineno}: {str(error)[:100]}"
     finally:
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
     return _ACCEPTED
 
 

@@ -19,7 +19,7 @@ from support import ROOT
 
 from amalthea_uros.design.campaign import campaign, executors
 from amalthea_uros.design.campaign.campaign import finished_runs, run_campaign
-from amalthea_uros.design.campaign.executors import cluster, processes, serial
+from amalthea_uros.design.campaign.executors import cluster, executor_for, processes, serial
 from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import SimulationJob
 from amalthea_uros.design.campaign.tables import table_format, write_table
@@ -257,6 +257,16 @@ def test_a_table_as_parquet(tmp_path):
         column: [value if column != "a" or value is None else str(value) for value in values]
         for column, values in zip(COLUMNS, map(list, zip(*TABLE, strict=True)), strict=True)
     }
+
+
+def test_runs_are_executed_one_by_one_where_processes_cannot_talk_to_each_other(monkeypatch):
+    assert executor_for(2, 2, None) is not serial
+
+    def refuse(*_arguments):
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr(multiprocessing.get_context("spawn"), "Lock", refuse)
+    assert executor_for(2, 2, None) is serial
 
 
 @pytest.mark.parametrize("suffix", ["csv", "json", "parquet"])

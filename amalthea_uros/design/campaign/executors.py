@@ -53,12 +53,21 @@ def executor_for(runs: int, workers: int | None, cluster_address: str | None) ->
     if cluster_address is not None:
         return cluster(cluster_address)
     count = min(runs, _available_cores() if workers is None else workers)
-    return processes(count) if count > 1 and can_start_safely() else serial
+    return processes(count) if count > 1 and can_start_safely() and _has_semaphores() else serial
 
 
 def _available_cores() -> int:
     """The cores that this process may use; containers often have fewer than the computer."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _has_semaphores() -> bool:
+    """Whether processes can talk to each other: in some containers, `/dev/shm` is missing or read-only."""
+    try:
+        get_context("spawn").Lock()
+    except (OSError, ImportError):
+        return False
+    return True
 
 
 @contextmanager
