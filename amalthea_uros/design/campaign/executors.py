@@ -12,7 +12,8 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from functools import lru_cache
 from importlib import import_module
-from multiprocessing import active_children, get_context
+from multiprocessing import active_children, get_context, parent_process
+from threading import Thread
 from typing import Any, TypeAlias
 
 from amalthea_uros._internal.failures import failure
@@ -170,9 +171,18 @@ def _install(job: bytes, is_verbose: bool) -> None:
     is_verbose : whether to show on standard error what is logged, as the process that started it does
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
     if is_verbose:
         logging.basicConfig(format="%(message)s", level=logging.INFO)
     _installed.append(pickle.loads(job))
+
+
+def _end_with_parent() -> None:
+    """End this process once the one that started it is killed; the queue of work that it waits for stays open in the others."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _execute_installed(runs: Sequence[CampaignRun]) -> list[RunOutcome]:
