@@ -26,7 +26,6 @@ from amalthea_uros.cli.parameters import INPUT, output_path
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats
 from amalthea_uros.report.basics.display import is_brief
-from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.files import save_text
 
@@ -203,7 +202,7 @@ def write_runs(table: Path | None, result: CampaignResult | SweepResult) -> None
 
     written = write_table(table, result.rows, is_complete=result.is_complete)
     if written is not None and not result.is_complete:
-        click.echo(visible(f"the table is not complete; it is in {written}"), err=True)
+        click.echo(f"the table is not complete; it is in {str(written)!r}", err=True)
 
 
 def refuse_input(path: Path, option: str) -> None:

@@ -206,7 +206,7 @@ def test_ctrl_c_keeps_the_runs_that_are_finished(run, tmp_path):
     assert code == 130
     assert (tmp_path / "t.json").read_text() == "a full table"
     assert [row["seed"] for row in json.loads((tmp_path / "t.partial.json").read_text())] == [10, 11, 12]
-    assert f"the table is not complete; it is in {tmp_path / 't.partial.json'}" in errors
+    assert f"the table is not complete; it is in '{tmp_path / 't.partial.json'}'" in errors
     assert "interrupted: 3 of 9 runs finished" in errors
     assert "Observed in 3 of 9 runs" in output
 
