@@ -100,3 +100,13 @@ def test_the_readme_is_the_page_of_the_package_index(in_the_wheel, distributions
     text = zipfile.ZipFile(wheel).read(metadata).decode()
     assert "Description-Content-Type: text/markdown" in text
     assert (ROOT / "README.md").read_text() in text
+
+
+def test_each_attack_is_shown_by_tests_that_exist():
+    table = (ROOT / "SECURITY.md").read_text().partition("| attack |")[2]
+    rows = [row for row in table.splitlines() if row.startswith("| ") and "---" not in row][1:]
+    assert len(rows) > 10
+    for row in rows:
+        shown = re.findall(r"`((?:tests|tools)/[\w/]+\.py)`", row.split("|")[3])
+        assert [path for path in shown if path.startswith("tests/")], row
+        assert all((ROOT / path).is_file() for path in shown), row

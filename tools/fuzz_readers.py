@@ -9,7 +9,7 @@ hundreds. The exit code is 1 if something fails.
 from __future__ import annotations
 
 import argparse
-import re
+import resource
 import shutil
 import signal
 import sys
@@ -25,6 +25,8 @@ from templating import ROOT
 
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "trace")]
 
+from fuzzing import byte_mutations
+from fuzzing.cases import mutations_of
 from fuzzing.seeds import seeds
 
 import amalthea_uros
@@ -37,45 +39,32 @@ from amalthea_uros.services.import_code import import_code
 from amalthea_uros.services.import_recording import import_recording
 from amalthea_uros.services.subject import open_system
 
-_SECONDS = 20
-_NUMBER = re.compile(rb"\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
-_HOSTILE = (
-    b"", b"-1", b"0", b"1e30", b"1e400", b"nan", b"inf", b"-inf", b"9" * 25, b"18446744073709551615", b"-9223372036854775808",
-    b"4294967296", b"1e-400", b"0x7fffffffffffffff", b"0.5", b"9" * 5000, b"\xc2\xb2", b"null", b"[]", b"{}", b"true", b"\x00", b'"',
-)  # fmt: skip
-_BYTES = (
-    b"\x00",
-    b"\xff",
-    b"\x7f",
-    b"\x80",
-    b"\xff\xff\xff\xff",
-    b"\x00\x00\x00\x80",
-    b"\n",
-    b",",
-    b":",
-    b"(",
-    b")",
-    b"<",
-    b"{",
-    b"}",
-)
+#: Of processor time, so that it does not matter what else the computer does.
+_SECONDS = 10
+#: Files of text whose structure is known.
+_STRUCTURED = (".amxmi", ".iprx", ".yaml", ".yml", ".c", ".cpp", ".ino", ".dbc", ".idl", ".msg", ".meta")
+_GENTLE = 0.6
+_MEMORY = 3 * 2**30
+_ACCEPTED, _REFUSED = "read", "refused"
 
 
 def main() -> None:
     options = _options()
     known: set[str] = set()
-    signal.signal(signal.SIGALRM, _late)
+    signal.signal(signal.SIGPROF, _late)
+    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     with tempfile.TemporaryDirectory() as folder:
         for name in options.readers or READERS:
-            failed = 0
+            failed, accepted = 0, 0
             for number in range(options.cases):
                 target = _case(name, Random(f"{options.seed}:{name}:{number}"), Path(folder) / "case")
-                cause = _failure(READERS[name], target)
-                if cause is not None and f"{name}: {cause}" not in known:
+                cause = _outcome(READERS[name], target)
+                accepted += cause == _ACCEPTED
+                if cause not in (_ACCEPTED, _REFUSED) and f"{name}: {cause}" not in known:
                     known.add(f"{name}: {cause}")
                     failed += 1
                     print(f"{name}: {cause}: {_kept(target, options.out / f'{name}-{number}')}", flush=True)
-            print(f"{name}: {options.cases} cases, {failed} failures", flush=True)
+            print(f"{name}: {options.cases} cases, {accepted} read, {failed} failures", flush=True)
     sys.exit(1 if known else 0)
 
 
@@ -91,60 +80,41 @@ def _options() -> argparse.Namespace:
 def _case(name: str, rng: Random, folder: Path) -> Path:
     """The files of a seed, of which one is mutated, and what is given to the reader: the folder, or its only file."""
     shutil.rmtree(folder, ignore_errors=True)
-    files = rng.choice(seeds(name))
+    files, others = rng.choice(seeds(name)), rng.choice(seeds(name))
     victim = rng.choice(sorted(files))
+    other = others[rng.choice(sorted(others))]
     for path, content in files.items():
         target = folder / path
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(_mutated(rng, content) if path == victim else content)
+        target.write_bytes(_mutated(rng, target.suffix, content, other) if path == victim else content)
     return folder / victim if len(files) == 1 else folder
 
 
-def _mutated(rng: Random, content: bytes) -> bytes:
-    for _ in range(rng.choice((1, 1, 2, 3, 6))):
-        content = rng.choice((_number, _number, _bytes, _bytes, _line, _cut))(rng, content)
+def _mutated(rng: Random, suffix: str, content: bytes, other: bytes) -> bytes:
+    """Most files stay near to what is read, so that the mutations reach what comes after the first checks."""
+    if rng.random() < _GENTLE:
+        if rng.random() < 0.5 and suffix in _STRUCTURED and content:
+            text = content.decode(errors="surrogateescape")
+            return rng.choice(mutations_of(suffix))(rng, text).encode(errors="surrogateescape")
+        return byte_mutations.number(rng, content, other)
+    for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
+        content = rng.choice(byte_mutations.MUTATIONS)(rng, content, other)
     return content
 
 
-def _number(rng: Random, content: bytes) -> bytes:
-    found = list(_NUMBER.finditer(content))
-    if not found:
-        return content
-    place = rng.choice(found)
-    return content[: place.start()] + rng.choice(_HOSTILE) + content[place.end() :]
-
-
-def _bytes(rng: Random, content: bytes) -> bytes:
-    at, new = rng.randrange(len(content) + 1), rng.choice((*_BYTES, bytes([rng.randrange(256)])))
-    return content[:at] + new + content[at + rng.choice((0, 1, len(new))) :]
-
-
-def _line(rng: Random, content: bytes) -> bytes:
-    lines = content.split(b"\n")
-    lines.insert(
-        rng.randrange(len(lines) + 1), lines.pop(rng.randrange(len(lines))) if rng.random() < 0.5 else rng.choice(lines)
-    )
-    return b"\n".join(lines)
-
-
-def _cut(rng: Random, content: bytes) -> bytes:
-    start = rng.randrange(len(content) + 1)
-    return content[:start] + content[start + rng.choice((1, 4, 40, 4000)) :]
-
-
-def _failure(read: Callable[[Path], object], path: Path) -> str | None:
-    """Why a reader failed, and where in the code; None if it did as it should."""
-    signal.alarm(_SECONDS)
+def _outcome(read: Callable[[Path], object], path: Path) -> str:
+    """Whether a file was read or refused; else why the reader failed, and where in the code."""
+    signal.setitimer(signal.ITIMER_PROF, _SECONDS)
     try:
         read(path)
     except (AmurosError, InvalidArgumentError):
-        pass
+        return _REFUSED
     except Exception as error:
         frame = [each for each in extract_tb(error.__traceback__) if "amalthea_uros" in each.filename][-1]
         return f"{type(error).__name__} at {Path(frame.filename).name}:{frame.lineno}: {str(error)[:100]}"
     finally:
-        signal.alarm(0)
-    return None
+        signal.setitimer(signal.ITIMER_PROF, 0)
+    return _ACCEPTED
 
 
 def _late(_number: int, _frame: FrameType | None) -> NoReturn:

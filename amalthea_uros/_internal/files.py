@@ -364,8 +364,14 @@ def _copied(path: Path, undo: ExitStack) -> Path | None:
 
 def _beside(path: Path, undo: ExitStack) -> Path:
     temporary = _name_beside(path.resolve())
-    undo.callback(temporary.unlink, missing_ok=True)
+    undo.callback(_remove, temporary)
     return temporary
+
+
+def _remove(temporary: Path) -> None:
+    """Remove a temporary file; where that fails, as in a read-only file system, what failed before is what the user has to know."""
+    with suppress(OSError):
+        temporary.unlink(missing_ok=True)
 
 
 def _name_beside(target: Path) -> Path:

@@ -30,6 +30,8 @@ from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.files import save_text
 
 if TYPE_CHECKING:
+    from amalthea_uros.design.campaign.simulations import CampaignResult
+    from amalthea_uros.design.campaign.sweeps import SweepResult
     from amalthea_uros.design.changes.apply import Difference
     from amalthea_uros.metamodel.model import Model
 
@@ -190,6 +192,17 @@ def write_outputs(outputs: Iterable[Output], result: object, as_text: object | N
             formats.write(output.format, shown, getattr(sys, stream))
         else:
             _write_file(output.path, output.format, shown)
+
+
+def write_runs(table: Path | None, result: CampaignResult | SweepResult) -> None:
+    """Write the table of a campaign, if one is wanted; say where it is, if the campaign was interrupted."""
+    if table is None:
+        return
+    from amalthea_uros.design.campaign.tables import write_table
+
+    written = write_table(table, result.rows, is_complete=result.is_complete)
+    if written is not None and not result.is_complete:
+        click.echo(f"the table is not complete; it is in {str(written)!r}", err=True)
 
 
 def refuse_input(path: Path, option: str) -> None:

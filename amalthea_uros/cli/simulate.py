@@ -23,7 +23,7 @@ from amalthea_uros.cli.options import (
     table_option,
     workers_options,
 )
-from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_result
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_result, write_runs
 from amalthea_uros.cli.parameters import OUTPUT_FILE, PICTURE, Parsed, assignment, picture_path
 from amalthea_uros.cli.patience import working
 from amalthea_uros.cli.pictures import Pictures
@@ -216,8 +216,7 @@ def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence
     """Show and write the runs; the exit code."""
     from amalthea_uros.report.documents.simulation import campaign_line
 
-    if table is not None:
-        write_table(table, result.rows)
+    write_runs(table, result)
     show_result(result, outputs, closing=campaign_line(result) if result.is_failed else "")
     if result.is_complete:
         return 1 if result.is_failed else 0

@@ -21,11 +21,11 @@ from amalthea_uros.cli.options import (
     table_option,
     workers_options,
 )
-from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_result
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_result, write_runs
 from amalthea_uros.cli.parameters import assignment, picture_path
 from amalthea_uros.cli.patience import working
 from amalthea_uros.design.campaign.sweeps import SweepResult, plan_sweep
-from amalthea_uros.design.campaign.tables import table_format, write_table
+from amalthea_uros.design.campaign.tables import table_format
 from amalthea_uros.design.changes.change import Change, Sweep
 from amalthea_uros.services.changed import open_changed
 from amalthea_uros.services.files import save_text
@@ -90,9 +90,8 @@ def sweep(
     result = replace(result, shown=quantities)
     for quantity in (*quantities, *(name for name, _ in pictures)):
         result.column(quantity)
-    if table is not None:
-        write_table(table, result.rows)
-    if pictures:
+    write_runs(table, result)
+    if pictures and result.is_complete:
         from amalthea_uros.report.result_pictures import sweep_picture
 
         for quantity, path in pictures:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from amalthea_uros.inchron.facts import OPTIONAL, features, is_a, metamodel, only_class
@@ -133,6 +134,8 @@ def parsed(type_name: str, text: str) -> Any:
         return text == "true"
     if convert is int and (len(text) > 20 or not -(2**63) <= int(text) < 2**63):
         raise ValueError(f"{text[:40]!r} does not fit into 64 bits")
+    if convert is float and not isfinite(float(text)):
+        raise ValueError(f"{text[:40]!r} is not a finite number")
     return convert(text)
 
 

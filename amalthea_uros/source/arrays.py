@@ -37,6 +37,8 @@ def declared_sizes(node: Node) -> dict[str, str]:
 
 
 def _template_length(kind: Node) -> str | None:
+    if kind.type.endswith("_specifier"):
+        return None  # templates in the body of a class are those of its members
     template = next((each for each in descendants(kind) if each.type == "template_type"), None)
     name = template.child_by_field_name("name") if template is not None else None
     arguments = template.child_by_field_name("arguments") if template is not None else None

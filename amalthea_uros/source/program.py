@@ -8,10 +8,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.arrays import WIDTHS, declared_sizes
 from amalthea_uros.source.constructions import made_class
 from amalthea_uros.source.files import SourceFile
-from amalthea_uros.source.syntax import descendants, parse, text_of
+from amalthea_uros.source.syntax import descendants, is_too_deep, parse, text_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -73,6 +74,7 @@ class CodeProgram:
     constructors : of each class
     statics : names that are known in one file only, with its path
     values : what variables are initialised with, by their keys
+    findings : files that are not read
     changed : names that something assigns to, or whose address is taken: what they are initialised with may not be their value
     """
 
@@ -90,6 +92,7 @@ class CodeProgram:
     constructors: dict[str, list[CodeFunction]] = field(default_factory=lambda: defaultdict(list))
     statics: set[tuple[str, str]] = field(default_factory=set)
     values: dict[str, tuple[Node, CodeFunction | SourceFile]] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
     changed: set[str] = field(default_factory=set)
 
     def number_of_objects(self, owner: str, depth: int = 0) -> int:
@@ -117,6 +120,9 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
     program = CodeProgram()
     for file in _with_semicolons(files):
         root = parse(file)
+        if is_too_deep(root):
+            program.findings.append(_too_deep(file))
+            continue
         for name, size in _STACK.findall(file.text.decode("utf-8", "replace")):
             program.arrays[name].add(size)
         program.files.append((file, root))
@@ -138,6 +144,11 @@ def _with_semicolons(files: tuple[SourceFile, ...]) -> list[SourceFile]:
         rb"^([ \t]*(?:%s)[ \t]*\([^\n;{}\\]*\))(?=[ \t\r]*$)" % b"|".join(map(re.escape, sorted(names))), re.MULTILINE
     )
     return [SourceFile(file.path, alone.sub(rb"\1;", file.text)) for file in files]
+
+
+def _too_deep(file: SourceFile) -> Finding:
+    advice = "Give only the files of the application."
+    return Finding("IMP002", Severity.ERROR, "the code is nested too deeply; the file is not read", Location(file.path), advice)
 
 
 def _function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction | None:

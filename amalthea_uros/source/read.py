@@ -56,7 +56,7 @@ def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
         program.macros[name].add(stated)
     walk = CodeWalk(program, _NAMES, {name: (form.entry, form.argument) for name, form in FORMS.items()})
     walk.all()
-    facts.findings += [*sources.findings, *walk.findings, *_several_programs(program), *build.findings]
+    facts.findings += [*sources.findings, *program.findings, *walk.findings, *_several_programs(program), *build.findings]
     facts.ros, facts.board, facts.clock = build.ros, build.board, build.clock
     facts.findings += _other_board(board, build)
     name = board or (build.board.value if build.board is not None else "")

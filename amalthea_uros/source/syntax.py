@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from tree_sitter import Node, Parser
 
 
+#: Levels of syntax trees; compilers guarantee 63 of blocks, structures and parentheses (C99, section 5.2.4.1).
+_MAX_DEPTH = 1000
+
+
 @cache
 def _parser(is_c: bool) -> Parser:
     try:
@@ -48,6 +52,20 @@ def parse(file: SourceFile) -> Node:
     ReadError : the parsers are not installed.
     """
     return _parser(file.is_c).parse(file.text).root_node
+
+
+def is_too_deep(root: Node) -> bool:
+    """Whether a tree is nested deeper than that of a program: what asks for the outer nodes of each node would take hours."""
+    cursor, depth = root.walk(), 0
+    while depth <= _MAX_DEPTH:
+        if cursor.goto_first_child():
+            depth += 1
+            continue
+        while not cursor.goto_next_sibling():
+            if not cursor.goto_parent():
+                return False
+            depth -= 1
+    return True
 
 
 def parse_expression(text: str, is_c: bool = True) -> Node | None:

@@ -8,7 +8,7 @@ from amalthea_uros.spec.executors import ExecutorSection, MessageCost, with_shar
 from amalthea_uros.spec.fields import Limits, entry
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.transports import Agent, TransportSection
-from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Priority, Size, described
+from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, OffsetOrNumberZero, Payload, Priority, Size, described
 
 
 class ResponseTime(Shorthand):
@@ -29,21 +29,21 @@ class ResponseTime(Shorthand):
 class RequestSizes(DescriptionSection):
     """Sizes of the longest requests to create entities, with the headers of the middleware: they depend on the lengths of names."""
 
-    participant: Size | None = None
+    participant: Payload | None = None
     """For a node."""
-    topic: Size | None = None
+    topic: Payload | None = None
     """For a topic."""
-    publisher: Size | None = None
+    publisher: Payload | None = None
     """For a publisher."""
-    datawriter: Size | None = None
+    datawriter: Payload | None = None
     """For the data writer of a publisher."""
-    subscriber: Size | None = None
+    subscriber: Payload | None = None
     """For the subscriber of a subscription."""
-    datareader: Size | None = None
+    datareader: Payload | None = None
     """For the data reader of a subscription."""
-    replier: Size | None = None
+    replier: Payload | None = None
     """For a service."""
-    requester: Size | None = None
+    requester: Payload | None = None
     """For a client."""
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import MessageCost
-from amalthea_uros.spec.fields import After, Limits, entry, examines
+from amalthea_uros.spec.fields import Limits, entry, examines
 from amalthea_uros.spec.losses import LossesSection
 from amalthea_uros.spec.os import OverheadSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
@@ -17,16 +17,13 @@ from amalthea_uros.spec.values import (
     Duration,
     Name,
     OffsetOrNumberZero,
+    PayloadOrNothing,
     Priority,
     Size,
     SizeOrNothing,
     described,
     problem,
-    unexpected,
 )
-
-#: Of a message, in bits: what the middleware adds fits into a payload of XRCE-DDS, whose length has two bytes.
-_LONGEST_OVERHEAD = 8 * 2**16
 
 
 class LatencySection(Shorthand):
@@ -251,12 +248,6 @@ class Agent(DescriptionSection):
     """Time from the last byte of a reliable message to the first byte of its acknowledgement; default: unknown."""
 
 
-def _not_too_long(bits: int) -> int:
-    if bits > _LONGEST_OVERHEAD:
-        raise unexpected("must not be greater than 64 KiB")
-    return bits
-
-
 class TransportSection(DescriptionSection):
     """The transport between the controller and the agent: exactly one wire."""
 
@@ -277,7 +268,7 @@ class TransportSection(DescriptionSection):
     """The virtual serial port of USB."""
     custom: CustomTransport | None = None
     """Another transport."""
-    overhead: Annotated[SizeOrNothing, After(_not_too_long)] = 12 * 8
+    overhead: PayloadOrNothing = 12 * 8
     """Overhead of XRCE-DDS per message: message header, submessage header and object ids; default: 12 B."""
     acknowledgement: Duration | None = None
     """Maximum time until a reliable message is acknowledged."""

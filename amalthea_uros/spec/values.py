@@ -15,6 +15,8 @@ from amalthea_uros.spec.type_checks import WrongValueError
 MAX_NAME_LENGTH = 200
 _NAME_RULE = f"1 to {MAX_NAME_LENGTH} printable characters without leading or trailing blanks"
 _GREATEST_IDENTIFIER = 2**29 - 1
+#: In bits: the length of a payload of XRCE-DDS has two bytes.
+_LONGEST_PAYLOAD = 8 * 2**16
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
 
@@ -113,6 +115,12 @@ def _number(value: Any) -> float:
     return number
 
 
+def _payload(bits: int) -> int:
+    if bits > _LONGEST_PAYLOAD:
+        raise unexpected("must not be greater than 64 KiB")
+    return bits
+
+
 def _whole_number(value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, int):
         raise unexpected("expected a whole number")
@@ -168,6 +176,9 @@ Rate: TypeAlias = Annotated[Any, _FREQUENCY, After(_positive), _text_schema(unit
 Size: TypeAlias = Annotated[int, _DATA_SIZE, After(_positive), _text_schema(units.DATA_SIZE)]
 #: A data size of zero or more, in bits.
 SizeOrNothing: TypeAlias = Annotated[int, _DATA_SIZE, After(_not_negative), _text_schema(units.DATA_SIZE, zero=True)]
+#: Sizes of what fits into a payload of XRCE-DDS, in bits.
+Payload: TypeAlias = Annotated[Size, After(_payload)]
+PayloadOrNothing: TypeAlias = Annotated[SizeOrNothing, After(_payload)]
 #: A bit rate above zero, in bits per second.
 BitRate: TypeAlias = Annotated[int, _BIT_RATE, After(_positive), _text_schema(units.BIT_RATE)]
 #: Symbols per second of a serial line, as everybody writes it: without a unit.

@@ -97,6 +97,7 @@ def _taken(by_users: Iterable[str]) -> Iterator[str]:
     return chain(by_users, catalogue.ids(), *map(_built_in, _BUILT_IN))
 
 
+@cache
 def _built_in_profile(identifier: str) -> RuleProfile | None:
     return next((profile for profile in _BUILT_IN if identifier in _built_in(profile)), None)
 

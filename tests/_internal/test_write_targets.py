@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -87,6 +88,18 @@ def test_a_read_only_file_is_not_replaced(tmp_path):
     with pytest.raises(FileError, match="read-only"):
         write_all({tmp_path / "b": b"new", path: b"new"})
     assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [("a", b"old")]
+
+
+def test_a_read_only_file_system_is_the_reason_that_is_given(tmp_path, monkeypatch):
+    def refuse(*_arguments, **_more):
+        raise OSError(30, "Read-only file system", ".a.temporary")
+
+    for target, name in ((os, "open"), (Path, "unlink"), (Path, "open")):
+        monkeypatch.setattr(target, name, refuse)
+    for write in (write_bytes, lambda path, _data: replacing(path).__enter__()):
+        with pytest.raises(FileError, match="cannot be written: Read-only file system") as caught:
+            write(tmp_path / "a", b"new")
+        assert caught.value.path == tmp_path / "a"
 
 
 def test_a_device_node_stays_one(tmp_path):

@@ -19,7 +19,7 @@ from support import ROOT
 
 from amalthea_uros.design.campaign import campaign, executors
 from amalthea_uros.design.campaign.campaign import finished_runs, run_campaign
-from amalthea_uros.design.campaign.executors import cluster, processes, serial
+from amalthea_uros.design.campaign.executors import cluster, executor_for, processes, serial
 from amalthea_uros.design.campaign.run import CampaignRun, RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import SimulationJob
 from amalthea_uros.design.campaign.tables import table_format, write_table
@@ -259,6 +259,16 @@ def test_a_table_as_parquet(tmp_path):
     }
 
 
+def test_runs_are_executed_one_by_one_where_processes_cannot_talk_to_each_other(monkeypatch):
+    assert executor_for(2, 2, None) is not serial
+
+    def refuse(*_arguments):
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr(multiprocessing.get_context("spawn"), "Lock", refuse)
+    assert executor_for(2, 2, None) is serial
+
+
 @pytest.mark.parametrize("suffix", ["csv", "json", "parquet"])
 def test_a_table_without_rows(suffix, tmp_path):
     if suffix == "parquet":
@@ -271,6 +281,18 @@ def test_an_interrupted_campaign_without_a_result_keeps_the_former_table(tmp_pat
     (tmp_path / "t.csv").write_text("run,seed\n1,1\n")
     write_table(tmp_path / "t.csv", [])
     assert (tmp_path / "t.csv").read_text() == "run,seed\n1,1\n"
+
+
+@pytest.mark.parametrize("is_there", [False, True])
+def test_a_table_that_is_not_complete_is_written_beside_the_former_one(is_there, tmp_path):
+    former = {"t.csv": "run,seed\n1,1\n"} if is_there else {}
+    for name, text in former.items():
+        (tmp_path / name).write_text(text)
+    assert write_table(tmp_path / "t.csv", [], is_complete=False) is None
+    assert write_table(tmp_path / "t.csv", ROWS[:1], is_complete=False) == tmp_path / "t.partial.csv"
+    lines = {each.name: each.read_text() for each in tmp_path.iterdir()}
+    assert lines.pop("t.partial.csv").splitlines()[0] == "run,seed,a,b,c"
+    assert lines == former
 
 
 def test_a_table_that_cannot_be_written(tmp_path, monkeypatch):

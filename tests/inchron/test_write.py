@@ -111,6 +111,14 @@ def test_what_is_wrong_is_refused_with_its_place(before, after, message):
     assert finding.location.line > 1 or "root" in before
 
 
+@pytest.mark.parametrize("value", ["inf", "nan", "1e400"])
+def test_what_is_not_a_finite_number_is_refused(value):
+    frequency = ProjectObject("Frequency", value=1.5, unit="MHz")
+    text = project_text(ProjectObject("Model", name="M", clocks=[ProjectObject("Clock", name="C", frequency=frequency)]))
+    with pytest.raises(ReadError, match="not a finite number"):
+        parse_project(Path("p.iprx"), text.replace('value="1.5"', f'value="{value}"'))
+
+
 def test_what_the_metamodel_does_not_know_is_left_out_with_a_finding():
     text = edited('priority="7"', 'priority="7" color="red"').replace("<stackLimit/>", "<stackLimit/><shape><inner/></shape>")
     read = parse_project(Path("p.iprx"), text)

@@ -37,7 +37,10 @@ def loop(tmp_path, body, includes="", **others):
         (f"{SPIN} HAL_Delay(5);", ["spin_some: 10 ms", "busy_wait: 5 ms"]),
         (f"rcl_publish(&p, &m, NULL); {SPIN}", ["publish: [out]", "spin_some: 10 ms"]),
         # Twice 100 ms at most.
-        (f"{SPIN} rmw_uros_ping_agent(100, 2); usleep(1000);", ["spin_some: 10 ms", "{ping: 200 ms, attempts: 2}", "sleep: 1 ms"]),
+        (
+            f"{SPIN} rmw_uros_ping_agent(100, 2); usleep(1000);",
+            ["spin_some: 10 ms", "{ping: 200 ms, attempts: 2}", "sleep: 1 ms"],
+        ),
         (f"rmw_uros_sync_session(1000); {SPIN}", ["sync: 1 s", "spin_some: 10 ms"]),
         (f"{SPIN} HAL_Delay(wait());", ["spin_some: 10 ms", "busy_wait: TODO"]),
         # Sleeps of other states, and of another branch, are no part of the rounds that spin.

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 from effort import every
-from fuzzing import cases, commands, invariants, line_mutations, sandbox
+from fuzzing import byte_mutations, cases, commands, invariants, line_mutations, sandbox
 from fuzzing.cases import Case
 from fuzzing.contradictions import contradictions
 from fuzzing.shrinking import minimal, shrunk
@@ -30,6 +30,14 @@ class TestCases:
         for mutation in line_mutations.MUTATIONS:
             for seed in range(20):
                 assert isinstance(mutation(Random(seed), "a"), str)
+
+
+class TestReaders:
+    def test_byte_mutations_take_any_content(self):
+        for mutation in byte_mutations.MUTATIONS:
+            for seed in range(20):
+                for content in (b"", b"\xff", b"a: 1\n- 2\n"):
+                    assert isinstance(mutation(Random(seed), content, b"other\n"), bytes)
 
 
 class TestShrinking:

@@ -3,6 +3,7 @@
 import pytest
 from effort import every
 from excerpts import access, call, found, graph, model, runnable
+from growth import growth
 from support import corpus, hand_written
 
 from amalthea_uros import check, extract, load
@@ -497,6 +498,16 @@ def test_a_long_circle_is_not_told_in_full(tmp_path):
     told = found("TIM-RECURSION", f"<swModel>{runnables}</swModel>", tmp_path)
     assert len(told) == 100
     assert told[0] == "'R0' calls itself: R0 -> R1 -> R2 -> R3 -> R4 -> R5 -> R6 -> R7 -> R8 -> R9 -> ... -> R0"
+
+
+def test_the_way_through_a_large_circle_is_not_searched(tmp_path):
+    def circle(size):
+        runnables = "".join(runnable(f"R{number}", call(f"R{(number + 1) % size}")) for number in range(size))
+        return model(f"<swModel>{runnables}</swModel>", tmp_path)
+
+    told = [finding.message for finding in check(circle(101), ["TIM-RECURSION"])]
+    assert set(told) == {f"'R{number}' calls itself, through 100 other runnables that do so, too" for number in range(101)}
+    assert growth(lambda each: check(each, ["TIM-RECURSION"]), [circle(size) for size in (150, 300, 600)]) < 2.5
 
 
 def test_many_runnables_are_looked_at_in_linear_time(tmp_path):

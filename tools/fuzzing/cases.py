@@ -17,6 +17,7 @@ from fuzzing.models import make_model
 
 _DESCRIPTIONS = (".yaml", ".yml")
 _MODELS = (".amxmi",)
+_PROJECTS = (".iprx",)
 #: What else commands read: sources to import, build options to check, databases of CAN frames.
 _SOURCES = (".c", ".cpp", ".ino")
 _OTHERS = (*_SOURCES, ".meta", ".dbc")
@@ -72,17 +73,18 @@ def _mutated(rng: Random, path: Path, content: bytes) -> bytes:
         text = content.decode()
     except UnicodeDecodeError:
         return _flipped(rng, content)
-    mutations = _mutations(path.suffix)
+    mutations = mutations_of(path.suffix)
     for _ in range(rng.choice((1, 1, 1, 2, 3, 8))):
         if text:
             text = rng.choice(mutations)(rng, text)
     return _encoded(rng, path, text)
 
 
-def _mutations(suffix: str) -> Sequence[Callable[[Random, str], str]]:
+def mutations_of(suffix: str) -> Sequence[Callable[[Random, str], str]]:
+    """The mutations of texts that know what such files consist of."""
     if suffix in _DESCRIPTIONS:
         return description_mutations.MUTATIONS
-    if suffix in _MODELS:
+    if suffix in (*_MODELS, *_PROJECTS):
         return model_mutations.MUTATIONS
     return source_mutations.MUTATIONS
 

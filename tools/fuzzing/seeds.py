@@ -63,7 +63,8 @@ def _baselines() -> Sequence[Files]:
 
 
 def _descriptions() -> Sequence[Files]:
-    return [files for files in _files(_SAMPLES, "*.yaml") if b"TODO" not in files["case.yaml"]]
+    found = _files(_SAMPLES, "*.yaml", count=80)
+    return [files for files in found if not any(word in files["case.yaml"] for word in (b"TODO", b" dbc:"))]
 
 
 def _projects() -> Sequence[Files]:

@@ -12,7 +12,8 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from functools import lru_cache
 from importlib import import_module
-from multiprocessing import active_children, get_context
+from multiprocessing import active_children, get_context, parent_process
+from threading import Thread
 from typing import Any, TypeAlias
 
 from amalthea_uros._internal.failures import failure
@@ -53,12 +54,21 @@ def executor_for(runs: int, workers: int | None, cluster_address: str | None) ->
     if cluster_address is not None:
         return cluster(cluster_address)
     count = min(runs, _available_cores() if workers is None else workers)
-    return processes(count) if count > 1 and can_start_safely() else serial
+    return processes(count) if count > 1 and can_start_safely() and _has_semaphores() else serial
 
 
 def _available_cores() -> int:
     """The cores that this process may use; containers often have fewer than the computer."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _has_semaphores() -> bool:
+    """Whether processes can talk to each other: in some containers, `/dev/shm` is missing or read-only."""
+    try:
+        get_context("spawn").Lock()
+    except (OSError, ImportError):
+        return False
+    return True
 
 
 @contextmanager
@@ -161,9 +171,18 @@ def _install(job: bytes, is_verbose: bool) -> None:
     is_verbose : whether to show on standard error what is logged, as the process that started it does
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
     if is_verbose:
         logging.basicConfig(format="%(message)s", level=logging.INFO)
     _installed.append(pickle.loads(job))
+
+
+def _end_with_parent() -> None:
+    """End this process once the one that started it is killed; the queue of work that it waits for stays open in the others."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _execute_installed(runs: Sequence[CampaignRun]) -> list[RunOutcome]:

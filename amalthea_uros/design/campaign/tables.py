@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from amalthea_uros._internal.csv_cells import safe_cell
-from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_file, write_bytes
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_file, is_stream, write_bytes
 from amalthea_uros.design.campaign.run import Record, Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.xmi.emf.files import not_writable
@@ -37,23 +37,31 @@ def table_format(path: Path) -> TableFormat:
     return found
 
 
-def write_table(path: Path, rows: Sequence[Record]) -> None:
+def write_table(path: Path, rows: Sequence[Record], *, is_complete: bool = True) -> Path | None:
     """Write a table whole or not at all; a column for each name in any of the rows.
 
-    Without rows, as after an interruption before the first one, a former table stays what it is.
+    A table that is not complete, as after an interruption, never replaces a former one: it is written beside it, as `runs.partial.csv`.
+    Without rows, a former table stays what it is.
+
+    Returns
+    -------
+    Path | None
+        What was written; None if there was nothing to write.
 
     Raises
     ------
     InvalidArgumentError : as for `table_format`.
     WriteError : the file cannot be written.
     """
-    if not rows and is_file(path):
-        return
+    if not rows and (is_file(path) or not is_complete):
+        return None
+    target = path if is_complete or is_stream(path) else path.with_suffix(f".partial{path.suffix}")
     columns = list(dict.fromkeys(name for row in rows for name in row))
     try:
-        write_bytes(path, table_format(path)(columns, rows))
+        write_bytes(target, table_format(path)(columns, rows))
     except FileError as error:
         raise not_writable(error) from None
+    return target
 
 
 def _csv(columns: Sequence[str], rows: Sequence[Record]) -> bytes:

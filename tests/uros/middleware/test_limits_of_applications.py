@@ -80,6 +80,13 @@ def test_no_header_takes_all_memory(author):
     assert found == [("YML012", "overhead: must not be greater than 64 KiB, found '1 TB'")]
 
 
+def test_no_request_takes_all_memory(author):
+    huge = LOOP + "\n  initialisation: {request_sizes: {topic: 4294967296 B}}"
+    assert [(rule, text) for _, rule, text in author.findings(app(middleware=huge))] == [
+        ("YML012", "topic: must not be greater than 64 KiB, found '4294967296 B'")
+    ]
+
+
 def test_histories_are_shared(author):
     # Reliable messages have a depth of 10 by default; the pool has 8 slots.
     ((severity, message),) = reported(author, "UR125")

@@ -124,12 +124,17 @@ def _check_wait(element: WaitEvent, context: Context) -> Iterator[str]:
 
 #: Longer call paths are shortened.
 _MOST = 12
+#: Runnables of a circle in which a path is searched from each of them: the time is a square of their number.
+_LARGEST_CIRCLE = 100
 
 
 @model_rule("TIM-RECURSION", Runnable)
 def _check_recursion(element: Runnable, context: Context) -> Iterator[str]:
     circle = context.once(_circles).get(element)
     if circle is None:
+        return
+    if len(circle) > _LARGEST_CIRCLE:
+        yield f"{element.name!r} calls itself, through {len(circle) - 1:,} other runnables that do so, too"
         return
     # The first caller of each runnable in a search from this one.
     first: dict[Runnable, Runnable] = {}
