@@ -52,6 +52,12 @@ def calls(system, until):
     }
 
 
+def is_bare(app):
+    """Whether iterations of an executor can take no time, which the player passes over; but for what sends outside of callbacks."""
+    spinning = (each.name for each in app.system.executors if each.place is None or each.place.thread == each.name)
+    return any(app.spins[name][0] == 0 for name in spinning)
+
+
 def first_difference(simulated, played, tolerance=0):
     """Where two lists of times differ; the last call can be cut off by the end. None if they do not."""
     if abs(len(simulated) - len(played)) > 1:

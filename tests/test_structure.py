@@ -25,7 +25,7 @@ LINES = {
     "bridge": 2871,
     "cli": 2582,
     "compare": 3817,
-    "design": 6591,
+    "design": 6592,
     "diagnostics": 43,
     "difference": 790,
     "editor": 656,
@@ -48,7 +48,7 @@ LINES = {
     "timing": 5637,
     "trace": 5073,
     "units": 206,
-    "uros": 7605,
+    "uros": 7610,
     "validate": 3667,
     "xmi": 8550,
 }

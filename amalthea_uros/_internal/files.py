@@ -44,7 +44,7 @@ _IMPOSSIBLE = (OSError, ValueError, RuntimeError)
 
 
 class FileFlaw(Enum):
-    """What is wrong with a file."""
+    """The flaws that a file can have."""
 
     ACCESS = auto()
     SIZE = auto()

@@ -110,7 +110,7 @@ class ObservedLimit:
     reason: str = ""
 
     @classmethod
-    def of(cls, limit: SystemLimit, found: ObservedJudgement, **more: Any) -> Self:
+    def of(cls, limit: SystemLimit, judged: ObservedJudgement, **more: Any) -> Self:
         """The result for a limit that was judged, with `more` of what a kind of results has."""
         return cls(
             name=limit.name,
@@ -118,10 +118,10 @@ class ObservedLimit:
             quantity=limit.quantity,
             is_upper=limit.is_upper,
             limit=None if limit.limit is None else Fraction(limit.limit),
-            verdict=found.verdict,
-            value=found.value,
+            verdict=judged.verdict,
+            value=judged.value,
             is_time=limit.is_time,
-            reason=found.reason,
+            reason=judged.reason,
             **more,
         )
 

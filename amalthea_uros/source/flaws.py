@@ -159,7 +159,7 @@ def _never_called(facts: CodeFacts, calls: list[FunctionCall]) -> Iterator[Findi
 
 
 def _never_reached(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
-    """Functions that create something, and that nothing leads to from where the program begins, if that is known."""
+    """Functions that create something, and that no path from the beginning of the program calls, if that is known."""
     begins = [each for name in ENTRIES for each in walk.program.functions.get(name, ()) if not each.owner]
     known = {*facts.threads, *facts.publishes, *(each.scope for each in begins)}
     for call in walk.calls:

@@ -170,7 +170,7 @@ def test_the_loop_that_connects_again_has_a_ping_more(tmp_path):
     (executor,) = [imported(tmp_path / "code", app).middleware.executor]
     items = [stated(each) for each in executor.loop.items]
     # What is done while there is no agent is no part of it; three attempts of 100 ms.
-    assert items == [{"spin_some": 10**9}, {"sleep": 3 * 10**9}, {"ping": 300 * 10**9}]
+    assert items == [{"spin_some": 10**9}, {"sleep": 3 * 10**9}, {"ping": 300 * 10**9, "attempts": 3}]
     # It notices that the agent is gone.
     assert "IMP026" not in {each.rule for each in import_code([tmp_path / "code"]).findings}
 

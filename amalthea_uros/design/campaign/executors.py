@@ -65,7 +65,9 @@ def _available_cores() -> int:
 def _has_semaphores() -> bool:
     """Whether processes can talk to each other: in some containers, `/dev/shm` is missing or read-only."""
     try:
-        get_context("spawn").Lock()
+        # The first semaphore starts a process that keeps account of them.
+        with _blocked_interrupts(), safe_start():
+            get_context("spawn").Lock()
     except (OSError, ImportError):
         return False
     return True

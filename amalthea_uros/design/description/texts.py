@@ -13,7 +13,7 @@ from amalthea_uros.uros.described import describe_text
 
 
 def edited_assembly(text: str, path: Path, changes: Sequence[Change]) -> Assembly:
-    """What is built from a text that changes were made in; InvalidArgumentError if it is not valid because of them."""
+    """The system that is built from a text with changes, and how; InvalidArgumentError if it is not valid because of them."""
     try:
         return describe_text(text, path).assembly
     except ReadError as error:

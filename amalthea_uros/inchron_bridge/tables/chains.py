@@ -68,12 +68,12 @@ def build_chains(context: Exporting) -> None:
     for chain in context.system.events.chains:
         try:
             events, left_out = unfold(chain, context.system)
-            ways = [(path, typed) for path in ways_in(events) for typed in _typed_events(path, context.system)]
+            readings = [(path, typed) for path in ways_in(events) for typed in _typed_events(path, context.system)]
             builders = [
                 _ChainGraph(f"{chain.name}_{number + 1}" if number else chain.name, context, typed)
-                for number, (_, typed) in enumerate(ways)
+                for number, (_, typed) in enumerate(readings)
             ]
-            for builder, (path, _) in zip(builders, ways, strict=True):
+            for builder, (path, _) in zip(builders, readings, strict=True):
                 builder.build(path)
         except UnknownError as error:
             context.lost(chain, "an event chain", f"{error}; only amuros reads it, in a comment")
@@ -84,7 +84,7 @@ def build_chains(context: Exporting) -> None:
         if not all(builder.is_exact for builder in builders) or events != plain_events(chain):
             keep_whole(graphs[0], CHAIN, chain)
         if len(graphs) > 1:
-            what = "that has events without a type" if ways[0][1] else "that begins with several events"
+            what = "that has events without a type" if readings[0][1] else "that begins with several events"
             context.changed(chain, f"an event chain {what}", "as one graph for each of them")
             join_items(graphs)
         context.graphs[chain.name] = graphs

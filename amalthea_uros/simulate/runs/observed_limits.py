@@ -210,8 +210,8 @@ def judge_requirements(
         else:
             quantities = observers.quantities(item)
         doubt = doubts.get(item.name, "")
-        found = [(limit, in_doubt(observe(limit, values), doubt)) for limit, values in quantities]
-        yield from (RequirementObservation.of(limit, judged, at=judged.at) for limit, judged in found)
+        observed = [(limit, in_doubt(observe(limit, values), doubt)) for limit, values in quantities]
+        yield from (RequirementObservation.of(limit, judged, at=judged.at) for limit, judged in observed)
         if not quantities and not isinstance(item, Requirement):
             reason = not_observed(observers.reason(item))
             yield from (RequirementObservation.of(limit, reason) for limit in limits or [without_number(item)])

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.application import NodeSection
@@ -87,11 +88,13 @@ def firmware_code(description: Description, system: System, *, reconnects: bool,
     middleware, nodes = description.middleware, description.application.nodes
     problems = list(_problems(nodes))
     port = code_port(middleware.port, description.os.rtos)
-    entities = CodeEntities(nodes, system.executors)
+    # Messages that loops send outside of callbacks are in the lines of the loops.
+    created = [each for each in system.executors if all(handle.kind is not HandleKind.LOOP_ITEM for handle in each.handles)]
+    entities = CodeEntities(nodes, created)
     names = entities.names
     # Without threads of their own, executors have their names.
     prefix = ("executor",) if port.threads else ()
-    executors = {each.name: names.of(*prefix, each.name) for each in system.executors}
+    executors = {each.name: names.of(*prefix, each.name) for each in created}
     publishers = {each.section.topic: each for each in entities.publishers}
     threads = []
     for section in middleware.executors or [middleware.executor]:

@@ -57,6 +57,8 @@ def _plain(loop: LoopSection, own: str, port: CodePort) -> Iterator[str]:
 def _item(
     item: LoopItem, own: str, executors: Mapping[str, str], publishers: Mapping[str, CodePublisher], port: CodePort
 ) -> Iterator[str]:
+    if item.every is not None:
+        raise ReadError([without_code("code that sends only so often ('every') is not written", item.location("every"))])
     if item.spin_some is not None:
         yield _spin(executors[item.executor] if item.executor is not None else own, item.spin_some)
     elif item.sleep is not None:
@@ -68,7 +70,8 @@ def _item(
             publisher = publishers[topic]
             yield f"amuros_note(rcl_publish(&{publisher.variable}, &{publisher.message.variable}, NULL));"
     elif item.ping is not None:
-        yield f"(void) rmw_uros_ping_agent({_milliseconds(item.ping)}, 1);"
+        attempts = item.attempts or 1
+        yield f"(void) rmw_uros_ping_agent({_milliseconds(item.ping // attempts)}, {attempts});"
     elif item.sync is not None:
         yield f"(void) rmw_uros_sync_session({_milliseconds(item.sync)});"
 

@@ -26,13 +26,10 @@ def different_calls(seed: int, tally: Tally) -> list[str]:
 def _of_executors(seed: int, tally: Tally) -> list[str]:
     app = loops.fixed(seed)
     system, until = _apart(app.system), 300 * MS
-    # What sends outside of callbacks takes no time itself.
-    costs = [app.spins[each.name] for each in system.executors if each.place is None or each.place.thread == each.name]
-    is_bare = any(least == 0 for least, _ in costs)
     # Who is first of two of equal priority is decided elsewhere.
     is_tied = any(priority in app.priorities.values() for priority, *_ in app.preempting)
     # Executors without a session take the messages of each other, as the player has it.
-    if is_bare or is_tied or (len(system.executors) > 1 and system.executors[0].session is None):
+    if loops.is_bare(app) or is_tied or (len(system.executors) > 1 and system.executors[0].session is None):
         return []
     simulated = loops.calls(system, until)
     spans = Spans(costs=app.costs, spins=app.spins, sending={}, draw=lambda least, most: least)
