@@ -25,7 +25,7 @@ LINES = {
     "bridge": 2871,
     "cli": 2582,
     "compare": 3817,
-    "design": 6592,
+    "design": 6597,
     "diagnostics": 43,
     "difference": 790,
     "editor": 656,

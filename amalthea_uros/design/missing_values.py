@@ -105,6 +105,19 @@ def _bounded(analysis: Analysis) -> set[str]:
     return {each.name for each in analysis.processes if each.response is not None and each.response.worst is not None}
 
 
+def _possible(origin: DescriptionOrigin | SystemOrigin, changes: Sequence[Change]) -> list[Change]:
+    """Changes without those that are not possible after the ones before them; some errors only show when the whole is built."""
+    try:
+        origin.configure(changes)
+    except InvalidArgumentError:
+        if len(changes) < 2:
+            return []
+        middle = len(changes) // 2
+        before = _possible(origin, changes[:middle])
+        return [*before, *_possible(origin.after(before), changes[middle:])]
+    return list(changes)
+
+
 @dataclass(slots=True)
 class _ValueTrial:
     """Analyses with statements, up to an effort.
@@ -129,19 +142,14 @@ class _ValueTrial:
     def accepted(self, changes: Sequence[Change], wanted: Iterable[Change]) -> list[Change]:
         """Those of the wanted changes that are possible and not made yet."""
         made = {change.target for change in changes}
-        origin: DescriptionOrigin | SystemOrigin = self.origin.after(changes)
+        pending = [each for each in wanted if each.target not in made and str(each).isprintable()]
         new: list[Change] = []
-        for change in wanted:
-            if change.target in made or not str(change).isprintable():
-                continue
-            try:
-                # Some errors only show when the whole is built.
-                origin.configure([change])
-                origin = origin.after([change])
-            except InvalidArgumentError:
-                continue
-            made.add(change.target)
-            new.append(change)
+        while pending:
+            # Of a target, another value is tried where the first one is not possible.
+            first = {each.target: each for each in reversed(pending)}
+            new += _possible(self.origin.after([*changes, *new]), [each for each in pending if first[each.target] is each])
+            made |= {each.target for each in new}
+            pending = [each for each in pending if each.target not in made and first[each.target] is not each]
         return new
 
     def gained(self, changes: Sequence[Change]) -> list[str]:
