@@ -43,7 +43,7 @@ LINES = {
     "report": 8649,
     "services": 2623,
     "simulate": 8607,
-    "source": 3459,
+    "source": 3547,
     "spec": 2963,
     "timing": 5637,
     "trace": 5073,

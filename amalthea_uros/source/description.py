@@ -242,12 +242,13 @@ def _loop_item(item: CodeLoopItem, owner: CodeExecutor | None, names: CodeNames)
     comment = _at(item.place, item.note)
     if item.kind is CodeLoopKind.PUBLISH:
         topic = names.topics.get(item.of)
-        return f"{item.kind}: {GAP if topic is None else f'[{quoted(topic)}]'}{comment}"
+        sent = f"{item.kind}: {GAP if topic is None else f'[{quoted(topic)}]'}"
+        return f"{{{sent}, every: {_time(item.every)}}}{comment}" if item.every else f"{sent}{comment}"
     if item.kind is CodeLoopKind.SPIN and (owner is None or item.of != owner.key):
         return f"{{{item.kind}: {_time(item.time)}, executor: {quoted(names.executors[item.of])}}}{comment}"
-    if item.attempts > 1:
-        return f"{{{item.kind}: {_time(item.time)}, attempts: {item.attempts}}}{comment}"
-    return f"{item.kind}: {_time(item.time)}{comment}"
+    more = f", attempts: {item.attempts}" if item.attempts > 1 else ""
+    more += f", every: {_time(item.every)}" if item.every else ""
+    return f"{{{item.kind}: {_time(item.time)}{more}}}{comment}" if more else f"{item.kind}: {_time(item.time)}{comment}"
 
 
 def _trigger(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:

@@ -143,6 +143,7 @@ class CodeLoopItem:
     of : key of the executor that spins, or of the publisher
     note : what to know about it
     attempts : how often it asks at most in its time
+    every : the least time between two times that it sends, 0 for none
     """
 
     kind: CodeLoopKind
@@ -151,6 +152,7 @@ class CodeLoopItem:
     of: str = ""
     note: str = ""
     attempts: int = 1
+    every: Time = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -161,9 +161,9 @@ def _item(facts: CodeFacts, call: FunctionCall) -> CodeLoopItem | None:
     if call.name in _AGENT:
         kind, position = _AGENT[call.name]
         attempts = 1 if position is None else _number(call, position)
-        return CodeLoopItem(kind=kind, time=_answer(call, attempts), place=call.place, attempts=attempts or 1)
+        return CodeLoopItem(kind=kind, time=_answer(call, attempts), place=call.place, attempts=attempts or 1, every=call.every)
     if call.name in SENDS and (sender := call.argument(0)) is not None:
-        return CodeLoopItem(kind=CodeLoopKind.PUBLISH, time=None, place=call.place, of=sender.key)
+        return CodeLoopItem(kind=CodeLoopKind.PUBLISH, time=None, place=call.place, of=sender.key, every=call.every)
     if SPIN_KINDS.get(call.name) is SpinKind.SOME and (executor := executor_of(facts, call)) is not None:
         return CodeLoopItem(kind=CodeLoopKind.SPIN, time=_timeout(call), place=call.place, of=executor.key)
     return None

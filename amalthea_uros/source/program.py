@@ -129,7 +129,7 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
         for node in descendants(root):
             _note(program, file, node)
     for name, (file, node) in program.function_macros.items():
-        function = _function_of_macro(name, file, node)
+        function = function_of_macro(name, file, node) if "rclc_" in text_of(node) else None
         if function is not None:
             program.functions[name].append(function)
     return program
@@ -151,11 +151,11 @@ def _too_deep(file: SourceFile) -> Finding:
     return Finding("IMP002", Severity.ERROR, "the code is nested too deeply; the file is not read", Location(file.path), advice)
 
 
-def _function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction | None:
-    """A macro that calls functions of rclc, as if it were a function; None if its text is no statement."""
+def function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction | None:
+    """A macro as if it were a function; None if its text is no statement."""
     value, parameters = node.child_by_field_name("value"), node.child_by_field_name("parameters")
     text = text_of(value) if value is not None else ""
-    if value is None or parameters is None or "rclc_" not in text or "##" in text:
+    if value is None or parameters is None or "##" in text:
         return None
     # Its code has the rows that it has in the file.
     code = f"{chr(10) * value.start_point.row}void f{text_of(parameters)} {{ {text.replace(chr(92), chr(32))}; }}"

@@ -9,9 +9,11 @@ from amalthea_uros._internal.limits import SOURCE_NODES
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.files import SourceFile
-from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of
+from amalthea_uros.source.intervals import interval_of, interval_of_macro
+from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of, function_of_macro
 from amalthea_uros.source.scope import SITE, THIS, Binding, Expression, call_site, called
 from amalthea_uros.source.syntax import branches, descendants, is_conditional, location_of, parse_expression, text_of
+from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -62,6 +64,7 @@ class FunctionCall:
     conditions : the branches of choices that it is in
     uncertain : whether it is compiled only under a condition that the sources do not decide
     unchecked : whether its result is not used
+    every : the least time between two such calls that a clock keeps, 0 for none
     """
 
     name: str
@@ -73,6 +76,7 @@ class FunctionCall:
     conditions: tuple[Branch, ...]
     uncertain: bool
     unchecked: bool
+    every: Time
 
     def excludes(self, other: FunctionCall) -> bool:
         """Whether it is in another branch of a choice than another call, such as another state of a state machine."""
@@ -97,6 +101,7 @@ class _WalkPosition:
     loops: tuple[Mark, ...] = ()
     conditions: tuple[Branch, ...] = ()
     uncertain: bool = False
+    every: Time = 0
     depth: int = 0
 
 
@@ -322,7 +327,27 @@ class CodeWalk:
         for child in (body or node).named_children:
             if condition is None or child.id != condition.id:
                 branch = _mark(node, context), _mark(child, context)
-                self._visit(child, replace(context, conditions=(*context.conditions, branch)))
+                every = max(context.every, self._interval(node, child, context))
+                self._visit(child, replace(context, conditions=(*context.conditions, branch), every=every))
+
+    def _interval(self, choice: Node, branch: Node, context: _WalkPosition) -> Time:
+        """The least time between two executions of a branch that its condition keeps."""
+        condition, taken = choice.child_by_field_name("condition"), choice.child_by_field_name("consequence")
+        if choice.type != "if_statement" or condition is None or taken is None or taken.id != branch.id:
+            return 0
+        return interval_of(condition, branch, lambda node: self._expression(node, context).number)
+
+    def _interval_of_argument(self, name: str, arguments: Sequence[Node], argument: Node, context: _WalkPosition) -> Time:
+        """The least time between two executions of an argument of a macro that executes it every so often."""
+        text = self.program.function_macros.get(name)
+        macro = None if text is None else function_of_macro(name, *text)
+        if macro is None or len(macro.parameters) != len(arguments):
+            return 0
+        given = dict(zip(macro.parameters, arguments, strict=True))
+        parameter = next((name for name, each in given.items() if each.id == argument.id), "")
+        return interval_of_macro(
+            macro, parameter, lambda node: self._expression(given.get(text_of(node), node), context).number
+        )
 
     def _decided(self, condition: Node, context: _WalkPosition) -> bool | None:
         """Whether a condition holds that only depends on constants, counters and what parameters are given; None if unknown."""
@@ -351,8 +376,10 @@ class CodeWalk:
     def _call(self, node: Node, context: _WalkPosition) -> None:
         self.seen.add((str(context.file.path), node.start_byte))
         name, arguments = called(node)
+        written = [each for each in arguments if text_of(each) != ";"]
         for argument in arguments:
-            self._visit(argument, context)
+            every = max(context.every, self._interval_of_argument(name, written, argument, context))
+            self._visit(argument, replace(context, every=every) if every > context.every else context)
         callee = self._callee(name, len(arguments), node, context)
         expressions = tuple(self._expression(argument, context) for argument in arguments)
         if callee is not None:
@@ -379,6 +406,7 @@ class CodeWalk:
                 context.conditions,
                 context.uncertain,
                 _is_unused(node),
+                context.every,
             )
         )
 
