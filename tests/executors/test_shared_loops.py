@@ -167,6 +167,18 @@ def test_several_items_are_sent_in_their_order():
     assert len({each.response_time.count for each in observed.executors["e0_sends"].handles}) == 1
 
 
+def test_what_one_thread_writes_does_not_wait_for_itself():
+    def handles(*items):
+        serial = "{serial: {baud_rate: 1000000, driver: {write: polling}}}"
+        text = with_item(*items).replace("{udp: {bitrate: 10 Mbit/s, latency: {min: 0, max: 500 us}}}", serial)
+        return [each.response.worst for each in analyze(text).executors["e0_sends"].handles]
+
+    # A write returns when the message is on the wire: what is written after it never finds it there.
+    published, ping = handles("{publish: [p]}", "{ping: 100 ms}")
+    assert ping == published + handles("{ping: 100 ms}")[0]
+    assert published == handles("{publish: [p]}")[0]
+
+
 def test_a_thread_can_send_without_an_executor():
     sender = "    - {name: imu, priority: 6, loop: [publish: [p], sleep: 20 ms]}\n"
     text = text_of(["{spin_some: 10 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, others=sender)

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import Hop, HopKind
+from amalthea_uros.executors.semantics.readiness import thread_of
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.software import Isr, Task
 from amalthea_uros.perf.system import System
@@ -78,7 +79,7 @@ def wire_hop(transmission: Transmission, solved: SolvedSystem) -> Hop:
 
 
 def _only_sender(transmission: Transmission, solved: SolvedSystem) -> str | None:
-    """The executor that alone sends in the direction of a message, where the driver keeps it until each message is on the wire.
+    """The executor whose thread alone sends in the direction of a message, if the driver keeps it until each message is on the wire.
 
     One of its messages never waits for another one, however close to each other the task model has to assume them.
     """
@@ -95,9 +96,10 @@ def _only_sender(transmission: Transmission, solved: SolvedSystem) -> str | None
         isinstance(system.processes.get(name), Task) for each in system.network.transmissions for name in each.processes
     )
     for executor in system.executors:
-        own = {each.transmission for handle in executor.handles for each in handle.publications}
-        if len(system.executors) == 1 and not has_threads:
-            # Without other threads, acknowledgements and heartbeats are sent by the executor while it waits.
+        thread = thread_of(executor, system.executors)
+        own = {each.transmission for member in thread for handle in member.handles for each in handle.publications}
+        if len(thread) == len(system.executors) and not has_threads:
+            # Without other threads, acknowledgements and heartbeats are sent by the executors while they wait.
             own |= {name for name, purpose in sent.items() if purpose in (Purpose.ACKNOWLEDGEMENT, Purpose.HEARTBEAT)}
         if sent.keys() <= own:
             return executor.name
