@@ -194,8 +194,9 @@ def test_a_topic_that_nobody_publishes_has_its_place_in_the_loop(tmp_path):
         describe(tmp_path / "app.yaml")
 
 
-def test_a_model_keeps_the_thread_of_its_executors(tmp_path):
-    (tmp_path / "app.yaml").write_text(TWO)
+@pytest.mark.parametrize("text", [TWO, with_item("{publish: [p]}", "{ping: 300 ms, attempts: 3, every: 1 s}")])
+def test_a_model_keeps_the_thread_of_its_executors(text, tmp_path):
+    (tmp_path / "app.yaml").write_text(text)
     system = describe(tmp_path / "app.yaml").system
     assert extract(build_model(system)).system.executors == system.executors
 

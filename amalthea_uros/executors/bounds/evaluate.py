@@ -36,7 +36,7 @@ from amalthea_uros.executors.semantics.readiness import is_message, sharing, sta
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
 from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 SOURCE = "proof in docs/proofs/executor-cycle.md; ros2/rclc executor.c; micro-ROS/rmw_microxrcedds rmw_wait.c"
 
@@ -164,9 +164,9 @@ def _of_cycle(cycle: Cycle) -> list[TimePart]:
 def _before(cycle: Cycle, delay: Delay, wait: Time) -> TimePart:
     """The further cycles, one for each message before it."""
     count, length = (delay.cycles or 1) - 1, cycle.longest_with(wait) or 0
-    why = f"{counted(count, 'message')}, each of which takes an iteration of at most {time_text(length)}"
+    why = f"{counted(count, 'message')}, each of which takes an iteration of at most {rounded_time_text(length, Rounding.UP)}"
     if delay.earlier:
-        why += f", less {time_text(delay.earlier)} by which it arrives later"
+        why += f", less {rounded_time_text(delay.earlier, Rounding.DOWN)} by which it arrives later"
     return TimePart(name="messages before it", most=count * length - delay.earlier, why=why)
 
 

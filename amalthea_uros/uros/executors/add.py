@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from amalthea_uros.executors.semantics.readiness import others_of_thread
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, lowest
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind, ThreadLoop, WaitBehaviour
@@ -53,7 +54,9 @@ def add_looping_executor(
         executor = replace(executor, busy_wait=busy)
     if polls_before_timers(executor):
         executor = replace(executor, poll=_poll(context, executor, core))
-    least = _least_time(context.runnables[executor.spin], core, context)
+    # An iteration of each executor before it in the loop lies between two of its own.
+    spins = [each.spin for each in others_of_thread(executor, context.executors)]
+    least = sum(_least_time(context.runnables[each], core, context) for each in (executor.spin, *spins))
     exclusive = has_one_message_per_iteration(executor, is_alone)
     check_executor(executor, section, context.description.middleware, context.notes)
     context.executors.append(executor)
