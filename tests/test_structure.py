@@ -48,7 +48,7 @@ LINES = {
     "timing": 5637,
     "trace": 5073,
     "units": 206,
-    "uros": 7610,
+    "uros": 7614,
     "validate": 3667,
     "xmi": 8550,
 }

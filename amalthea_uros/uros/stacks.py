@@ -33,11 +33,14 @@ def stacks_of(description: Description, system: System, threads: Iterable[Middle
     """
     own_threads = {thread.name: thread.stack for thread in threads} if description.application.nodes else {}
     sizes = dict(_stated(description)) | own_threads
+    # Executors that spin in one loop use the stack of its thread, and so does what the loop sends itself.
+    of_thread = {each.task: each.place.thread for each in system.executors if each.place is not None}
+    sizes |= {task: sizes.get(thread) for task, thread in of_thread.items()}
     stack = description.os.stack
     if stack == "shared" or (stack is None and description.middleware.policy == "OSEK"):
         return shared_stacks(system, sizes)
     messages = {each.name for each in system.network.transmissions}
-    tasks = [task.name for task in system.software.tasks if task.name not in messages]
+    tasks = [of_thread.get(task.name, task.name) for task in system.software.tasks if task.name not in messages]
     # Interrupt service routines run on the stack of the interrupts, or of the task that they interrupt: those that state one count.
     interrupt = receive_interrupt(description.middleware.transport)
     routines = {} if interrupt is None else {name_for_other_frames(interrupt): interrupt.name}

@@ -194,6 +194,13 @@ def test_a_topic_that_nobody_publishes_has_its_place_in_the_loop(tmp_path):
         describe(tmp_path / "app.yaml")
 
 
+@pytest.mark.parametrize("text", [TWO, with_item("{publish: [p]}")])
+def test_a_thread_has_one_stack(text, tmp_path):
+    (tmp_path / "app.yaml").write_text(text.replace("name: e0, ", "name: e0, stack: 4 kB, "))
+    (stack,) = [each for each in describe(tmp_path / "app.yaml").memory.stacks.users if each.name.startswith("e")]
+    assert (stack.name, stack.size) == ("e0", 4000)
+
+
 @pytest.mark.parametrize("text", [TWO, with_item("{publish: [p]}", "{ping: 300 ms, attempts: 3, every: 1 s}")])
 def test_a_model_keeps_the_thread_of_its_executors(text, tmp_path):
     (tmp_path / "app.yaml").write_text(text)
