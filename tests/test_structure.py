@@ -24,8 +24,8 @@ LINES = {
     "analyze": 8928,
     "bridge": 2871,
     "cli": 2582,
-    "compare": 3817,
-    "design": 6597,
+    "compare": 3825,
+    "design": 6598,
     "diagnostics": 43,
     "difference": 790,
     "editor": 656,
@@ -36,7 +36,7 @@ LINES = {
     "inchron_bridge": 3349,
     "judge": 595,
     "measure": 1121,
-    "metamodel": 3288,
+    "metamodel": 3291,
     "names": 17,
     "perf": 1732,
     "platforms": 0,
@@ -50,7 +50,7 @@ LINES = {
     "units": 206,
     "uros": 7614,
     "validate": 3667,
-    "xmi": 8550,
+    "xmi": 8579,
 }
 
 #: Files may import from this many modules at most; those of the table do so still, and none more.

@@ -144,7 +144,7 @@ def improvements_of(
     # Of a description, each is built to find out whether it is possible, so that no more of them are than are tried.
     prepared = list(islice((pair for one in every for pair in trial.prepared(one)), None if source is None else MAX_ANALYSES))
     most = min(MAX_ANALYSES, max(MIN_ANALYSES, MAX_PROCESSES // max(1, len(analysis.processes))))
-    tries = (trial.tried(each, changed) for each, changed in islice(prepared, most))
+    tries = (trial.tried(each, changed, trial.before) for each, changed in islice(prepared, most))
     singles = [each for each in tries if each is not None]
     ranked = sorted(singles, key=rank)
     return Improvements(
@@ -202,10 +202,10 @@ class Trial:
         if changed is not None:
             yield candidate, changed
 
-    def tried(self, candidate: ImprovingChange, changed: Configuration) -> Improvement | None:
-        """The improvement by a changed system; None if the latency does not get shorter."""
+    def tried(self, candidate: ImprovingChange, changed: Configuration, limit: Time | None) -> Improvement | None:
+        """The improvement by a changed system; None if the latency is not shorter than a limit (None: has no bound)."""
         try:
-            after = analyze_while(*changed, partial(_is_shorter, self.chain, self.quantity, self._before))
+            after = analyze_while(*changed, partial(_is_shorter, self.chain, self.quantity, limit))
         except InvalidArgumentError:
             return None
         self.count += 1
@@ -214,7 +214,8 @@ class Trial:
         return _improvement(candidate, self._differences(candidate), self.chain, self.quantity, self.analysis, after)
 
     @property
-    def _before(self) -> Time | None:
+    def before(self) -> Time | None:
+        """The present latency."""
         return _latency(self.analysis, self.chain, self.quantity)
 
     def combined(self, ranked: Sequence[Improvement]) -> Iterator[Improvement]:
@@ -228,9 +229,10 @@ class Trial:
             both = _combination(best.change, other.change)
             if both is None or len(both.changes) > MAX_COMBINED:
                 continue
+            limit = min(best.after, other.after)
             for candidate, changed in self.prepared(both):
-                improvement = self.tried(candidate, changed)
-                if improvement is not None and improvement.after < min(best.after, other.after):
+                improvement = self.tried(candidate, changed, limit)
+                if improvement is not None and improvement.after < limit:
                     best = improvement
                     yield improvement
 
@@ -249,10 +251,10 @@ def _combination(one: ImprovingChange, other: ImprovingChange) -> ImprovingChang
     return ImprovingChange(text=f"{one.text}, {other.text}", changes=changes, is_stated=True, count=one.count + other.count)
 
 
-def _is_shorter(chain: str, quantity: LatencyQuantity, before: Time | None, for_a_phase: Analysis) -> bool:
-    """Whether a maximum is shorter for a phase of a changed system; if not, it is not over all phases either."""
+def _is_shorter(chain: str, quantity: LatencyQuantity, limit: Time | None, for_a_phase: Analysis) -> bool:
+    """Whether a maximum is shorter than a limit for a phase of a changed system; if not, it is not over all phases either."""
     now = _latency(for_a_phase, chain, quantity)
-    return now is not None and (before is None or now < before)
+    return now is not None and (limit is None or now < limit)
 
 
 def check_explained(quantity: object) -> None:

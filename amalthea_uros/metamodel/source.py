@@ -15,6 +15,8 @@ from typing import NamedTuple
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.metamodel.element import Element
 
+#: Most parts of a text of so many characters have only ASCII, which is found out faster than where others are.
+_CHUNK = 256
 _BEYOND_ASCII = re.compile(r"[^\x00-\x7f]+")
 _TAG_NAME = re.compile(r"<[^\s/>]+")
 _ATTRIBUTE = re.compile(r"""\s+(?P<name>[^\s=/>]+)\s*=\s*(?P<quoted>"[^"]*"|'[^']*')""")
@@ -89,7 +91,9 @@ class SourceText:
     def _shifts(self) -> tuple[list[int], list[int]]:
         """After each run of characters outside ASCII: the offset in bytes, and the difference to the offset in characters."""
         offsets, shifts = [0], [0]
-        for run in _BEYOND_ASCII.finditer(self.text):
+        chunks = range(0, len(self.text), _CHUNK)
+        beyond = (at for at in chunks if not self.text[at : at + _CHUNK].isascii())
+        for run in (run for at in beyond for run in _BEYOND_ASCII.finditer(self.text, at, at + _CHUNK)):
             shift = shifts[-1] + len(run[0].encode()) - len(run[0])
             offsets.append(run.end() + shift)
             shifts.append(shift)

@@ -67,6 +67,11 @@ def test_a_command_imports_only_what_it_needs(command, needed):
     assert imported_by(*map(str, command)) & HEAVY <= needed
 
 
+def test_a_report_imports_no_large_library_but_numpy_and_that_of_its_template(tmp_path):
+    imported = imported_by("report", str(YAML), "-o", str(tmp_path / "report.html"))
+    assert imported & {"networkx", "numba", "scipy", "pandas", "pydantic", "xmlschema", "dask"} == set()
+
+
 def imported_by(*arguments):
     code = (
         "import sys; from amalthea_uros.cli.main import main\n"

@@ -3,7 +3,9 @@
 import pytest
 
 from amalthea_uros import InvalidArgumentError, ReadError, measure
-from amalthea_uros.compare.measured.columns import parse_column, unit_of
+from amalthea_uros.compare.measured.columns import TableColumn, parse_column, unit_of
+from amalthea_uros.compare.measured.tables import measured_table
+from amalthea_uros.measure.window import MeasurementWindow
 from amalthea_uros.units import MICROSECOND, MILLISECOND, SECOND
 
 
@@ -207,3 +209,25 @@ def test_two_columns_with_values_are_refused(tmp_path):
     path.write_text("object,value_us,value_ms\na,4000,400\n")
     with pytest.raises(ReadError, match="2 columns with 'value'"):
         measure(path)
+
+
+class CountedName(str):
+    """A name that counts how often it is compared with another one."""
+
+    __slots__ = ()
+    comparisons = 0
+    __hash__ = str.__hash__
+
+    def __eq__(self, other):
+        CountedName.comparisons += 1
+        return str.__eq__(self, other)
+
+
+def test_each_column_is_compared_with_few_others(tmp_path):
+    names = [f"c{number}" for number in range(100)]
+    path = tmp_path / "wide.csv"
+    path.write_text(f"{','.join(names)}\n{','.join('1' for _ in names)}\n")
+    columns = [TableColumn(CountedName(name), None, CountedName(name)) for name in names]
+    found = measured_table(path, columns, None, MILLISECOND, MeasurementWindow())
+    assert [series.name for series in found.series] == names
+    assert CountedName.comparisons < 10 * len(names)

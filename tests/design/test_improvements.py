@@ -168,3 +168,17 @@ def test_the_phases_of_a_change_that_shortens_nothing_are_not_all_analysed(monke
     whole = analyze_module.analyze_while(system, None, lambda _analysis: True)
     assert len(analyses) == 1 + 20
     assert whole.chains == analyze_module.analyze_system(system).chains
+
+
+def test_only_changes_that_are_found_are_analysed_for_all_phases(monkeypatch, advanced):
+    """Combined changes that are not better than each of them alone are given up like those that shorten nothing."""
+    whole = []
+
+    def counted(*given):
+        after = analyze_module.analyze_while(*given)
+        whole.extend([after] if after else [])
+        return after
+
+    monkeypatch.setattr(improvements_module, "analyze_while", counted)
+    found = improvements(advanced, CHAIN)
+    assert len(whole) == len(found.found) < found.tried

@@ -2,7 +2,7 @@
 
 import pytest
 
-from amalthea_uros import build, diff, load, simulate, sweep
+from amalthea_uros import build, calibrate, diff, load, measure, simulate, sweep
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.check import check_files
 from amalthea_uros.services.format import format_files
@@ -111,6 +111,8 @@ def test_checking_descriptions(name, tmp_path):
     assert growth(lambda path: check_files([path]), files(tmp_path, DESCRIPTIONS[name], ".yaml")) < 2.5
 
 
+#: Sizes of systems that are analysed or edited.
+FEW = (10, 20, 40)
 #: An exponent of 1.1 of a polynomial.
 ALMOST_LINEAR = 2**1.1
 COMMANDS = {
@@ -121,13 +123,17 @@ COMMANDS = {
 }
 
 
+def timers(count):
+    """A description with as many timers."""
+    each = repeated("{name: t#, period: 100 ms, execution_time: 1 us}", count, ", ")
+    return f"{DESCRIPTION}hardware: {{platform: single-core}}\napplication: {{nodes: [{{name: n, timers: [{each}]}}]}}\n"
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_commands_on_many_tasks(command, tmp_path):
-    paths = [tmp_path / f"{size}.yaml" for size in (10, 20, 40)]
+    paths = [tmp_path / f"{size}.yaml" for size in FEW]
     for path in paths:
-        timers = repeated("{name: t#, period: 100 ms, execution_time: 1 us}", int(path.stem), ", ")
-        application = f"application: {{nodes: [{{name: n, timers: [{timers}]}}]}}\n"
-        path.write_text(f"{DESCRIPTION}hardware: {{platform: single-core}}\n{application}")
+        path.write_text(timers(int(path.stem)))
     assert growth(COMMANDS[command], paths) < ALMOST_LINEAR
 
 
@@ -140,3 +146,25 @@ def test_comparing_models_of_which_each_object_differs(tmp_path):
         (tmp_path / value).mkdir()
         pairs.append(files(tmp_path / value, labels(value)))
     assert growth(lambda pair: diff(*pair), list(zip(*pairs, strict=True))) < ALMOST_LINEAR
+
+
+def test_measuring_many_names(tmp_path):
+    jobs = [
+        f"{1000 * number + at},Core,0,T,T{number},0,{event}"
+        for number in range(max(SIZES))
+        for at, event in enumerate(("activate", "start", "terminate"))
+    ]
+    paths = [tmp_path / f"{size}.btf" for size in SIZES]
+    for path, size in zip(paths, SIZES, strict=True):
+        path.write_text("\n".join(["#version 2.1.3", "#timeScale ns", *jobs[: 3 * size], ""]))
+    assert growth(measure, paths) < ALMOST_LINEAR
+
+
+def test_calibrating_many_values(tmp_path):
+    inputs = []
+    for size in FEW:
+        table = tmp_path / f"{size}.csv"
+        table.write_text(f"{repeated('c#_us', size, ',')}\n{repeated('1', size, ',')}\n")
+        measured = measure(table, columns=[f"c{number}_us=t{number}.execution_time" for number in range(size)])
+        inputs.append((timers(size), measured))
+    assert growth(lambda given: calibrate(*given), inputs) < ALMOST_LINEAR

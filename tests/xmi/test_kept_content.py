@@ -1,5 +1,7 @@
 """What a model does not know is written again so that everything is read as before, and what would not be is not written."""
 
+from dataclasses import replace
+
 import pytest
 from effort import every, examples
 from hypothesis import given
@@ -9,7 +11,7 @@ from strategies import meaning, models, parse
 from support import MODEL, corpus, hand_written
 
 from amalthea_uros import load, save
-from amalthea_uros.am import PeriodicStimulus, Task, Time
+from amalthea_uros.am import Label, PeriodicStimulus, Task, Time
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import extras_of
 from amalthea_uros.xmi.emf.writer import document_text
@@ -180,3 +182,24 @@ class TestReadingBack:
         task.name = "U"
         with pytest.raises(WriteError, match="XMI106"):
             document_text(model.documents[0], canonical=is_canonical)
+
+    def test_a_change_in_an_object_that_is_not_noted_as_modified_is_not_lost(self):
+        model = parse(root('<swModel><tasks name="T"/><labels name="L"/></swModel>'))
+        (document,) = model.documents
+        (task,) = model.all(Task)
+        task.name = "U"
+        document.changes.modified.discard(task.container)
+        assert '<tasks name="U"/><labels name="L"/>' in document_text(document)
+
+    @pytest.mark.parametrize("beyond", [-1, len("</labels>"), len('</labels><tasks name="T"/>')])
+    def test_an_untouched_object_that_would_not_be_copied_as_a_whole(self, beyond):
+        """Its text would end before or after its own end."""
+        model = parse(root('<swModel><labels name="L"><size value="1" unit="bit"/></labels><tasks name="T"/></swModel>'))
+        (document,) = model.documents
+        (label,) = model.all(Label)
+        ends = list(document.source.byte_ends)
+        ends[document.source.index[label]] += beyond
+        document.source = replace(document.source, byte_ends=ends)
+        model.documents[0].root.sw_model.tasks[0].name = "U"
+        with pytest.raises(WriteError, match="XMI106"):
+            document_text(document)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from decimal import Decimal
+from functools import cached_property
 from pathlib import Path
 
 from amalthea_uros._internal.records import dataclass
@@ -61,12 +62,20 @@ class TableLayout:
     time: TimesColumn | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class HeaderColumns:
     """The columns of a header."""
 
     path: Path
     header: Record
+
+    @cached_property
+    def _places(self) -> Mapping[str, Sequence[int]]:
+        """The places of each name: more than one for equal names."""
+        found: dict[str, list[int]] = {}
+        for place, name in enumerate(self.header.fields):
+            found.setdefault(name, []).append(place)
+        return found
 
     def of(self, columns: Sequence[TableColumn], valid: ValidRows | None, unit: Time | None) -> TableLayout:
         """The layout of the table.
@@ -89,12 +98,13 @@ class HeaderColumns:
         )
 
     def _place(self, name: str) -> int:
-        names = self.header.fields
-        if names.count(name) > 1:
-            message = f"the table has {names.count(name)} columns {name!r}, and which one is meant is not known"
+        places = self._places.get(name, ())
+        if len(places) > 1:
+            message = f"the table has {len(places)} columns {name!r}, and which one is meant is not known"
             raise self._error(message, "Give each column a name of its own.")
-        if name in names:
-            return names.index(name)
+        if places:
+            return places[0]
+        names = self.header.fields
         what = f"it has {listed(names)}" if names else "its header is empty"
         advice = did_you_mean(name, dict.fromkeys(names)) or "name a column of the header with --column"
         raise self._error(f"the table has no column {name!r}; {what}", f"{advice[:1].upper()}{advice[1:]}")

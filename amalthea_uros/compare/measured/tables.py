@@ -6,6 +6,7 @@ A row without a value, or that the table itself marks as failed, is one that was
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from pathlib import Path
@@ -42,9 +43,8 @@ def measured_table(
     ReadError : the file cannot be read, has no such column, or several of its name; or its unit is not known.
     InvalidArgumentError : two columns are the same quantity, or a part is to be measured of a table without times.
     """
-    meant = [(each.object, each.quantity) for each in columns]
-    for name, quantity in meant:
-        if meant.count((name, quantity)) > 1:
+    for (name, quantity), count in Counter((each.object, each.quantity) for each in columns).items():
+        if count > 1:
             raise InvalidArgumentError(f"two columns are the {quantity.replace('_', ' ')} of {name!r}; leave one of them out")
     problems = TraceProblems(path)
     table: _TableOfValues | None = None

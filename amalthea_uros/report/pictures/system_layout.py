@@ -12,8 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-import networkx as nx
-
+from amalthea_uros._internal.graphs import bottom_up, reached
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.report.pictures.svg import SMALL_SIZE, text_width
 
@@ -107,14 +106,16 @@ def lay_out(bands: Sequence[Sequence[str]], wires: Sequence[LayoutWire], left: f
 
 def _columns(rows: Sequence[str], wires: Iterable[LayoutWire]) -> dict[str, int]:
     """The layer of each box, without the wires that would close a circle."""
-    graph: nx.DiGraph = nx.DiGraph()
-    graph.add_nodes_from(rows)
+    following: dict[str, list[str]] = {name: [] for name in rows}
     for wire in wires:
         for target in wire.targets:
-            if not nx.has_path(graph, target, wire.source):
-                graph.add_edge(wire.source, target)
-    layers = enumerate(nx.topological_generations(graph))
-    return {name: min(layer, MOST_COLUMNS - 1) for layer, names in layers for name in names}
+            if wire.source not in reached([target], following.__getitem__):
+                following[wire.source].append(target)
+    layers = dict.fromkeys(rows, 0)
+    for name in reversed(bottom_up(rows, following.__getitem__)):
+        for target in following[name]:
+            layers[target] = max(layers[target], layers[name] + 1)
+    return {name: min(layer, MOST_COLUMNS - 1) for name, layer in layers.items()}
 
 
 def _turns(wire: LayoutWire, columns: Mapping[str, int]) -> dict[str, int]:

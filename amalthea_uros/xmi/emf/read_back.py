@@ -1,10 +1,13 @@
 """What is about to be written, read again and compared with the document, so that no file is written that means something else.
 
-The text is parsed once more and compared element by element while it is parsed; no second model is made.
+The text is parsed once more and compared element by element while it is parsed; no second model is made. Of an untouched object,
+whose text is copied with everything in it, a mark is read instead: that text was read before, and gave this object.
 """
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, NoReturn
 from xml.parsers import expat
 
@@ -23,6 +26,9 @@ _HELP = (
     "Remove what amuros does not know of this object, or what is given twice. If there is nothing like that, this is an error in "
     "amuros: report it together with the file."
 )
+#: The attribute of the mark that stands for a copied object, with its number; no file has this prefix.
+_MARK = "amuros-copy:number"
+_NAME = re.compile(r"<([^\s/>]+)")
 
 
 class _OpenElement(NamedTuple):
@@ -41,16 +47,28 @@ class _OpenElement(NamedTuple):
     attributes: frozenset[str]
 
 
-def check_read_back(text: str, document: Document, serializer: EmfSerializer, merger: SourceMerger | None) -> None:
+def check_read_back(
+    pieces: Sequence[str],
+    copied: Mapping[int, Element],
+    document: Document,
+    serializer: EmfSerializer,
+    merger: SourceMerger | None,
+) -> None:
     """Compare a text with the document that it is to represent.
+
+    Parameters
+    ----------
+    pieces : of the text
+    copied : the untouched objects whose text is copied with everything in it, by the numbers of the pieces
 
     Raises
     ------
     WriteError : reading the text would not give the same model.
     """
-    comparison = _ReadBackComparison(document, serializer, merger)
-    if problems.lacks_namespace(text):
+    comparison = _ReadBackComparison(document, serializer, merger, copied)
+    if problems.lacks_namespace("".join(pieces)):
         comparison.refuse(document.root, "the prefix 'xsi' would not be declared")
+    text = "".join([comparison.mark(number, piece) if number in copied else piece for number, piece in enumerate(pieces)])
     parser = comparison.parser
     parser.StartElementHandler, parser.EndElementHandler = comparison.start, comparison.end
     try:
@@ -63,14 +81,25 @@ def check_read_back(text: str, document: Document, serializer: EmfSerializer, me
 
 
 class _ReadBackComparison:
-    def __init__(self, document: Document, serializer: EmfSerializer, merger: SourceMerger | None) -> None:
+    def __init__(
+        self, document: Document, serializer: EmfSerializer, merger: SourceMerger | None, copied: Mapping[int, Element]
+    ) -> None:
         self.document = document
+        self.copied = {str(number): element for number, element in copied.items()}
         self.serializer = serializer
         self.merger = merger
         self.parser = expat.ParserCreate()
         self.header: ModelHeader | None = None
         self.stack: list[_OpenElement] = []
         self.skipped_depth = 0
+
+    def mark(self, number: int, piece: str) -> str:
+        """What is read instead of a copied object."""
+        name, last = _NAME.match(piece), piece.rfind("<")
+        is_empty = last == 0 and piece.endswith("/>")
+        if name is None or not (is_empty or re.fullmatch(rf"</{re.escape(name[1])}\s*>", piece[last:])):
+            self.refuse(self.copied[str(number)], "its text would not be one element")
+        return f'{name[0]} {_MARK}="{number}"/>'
 
     # Events
 
@@ -132,22 +161,24 @@ class _ReadBackComparison:
         else:
             if type_name is not None and self.header.type_prefix != TYPE_PREFIX:
                 type_name = TYPE_PREFIX + type_name.removeprefix(self.header.type_prefix)
-            plan = feature.parts.get(type_name) or self.serializer.plans.part(feature, type_name)
-            if plan is None or is_surplus:
-                return False
             values = _values(holder, feature)
-            if number >= len(values) or type(values[number]) is not plan.cls:
+            copied = self.copied.get(attributes.get(_MARK, ""))
+            plan = feature.parts.get(type_name) or self.serializer.plans.part(feature, type_name)
+            if is_surplus or (plan is None and copied is None):
+                return False
+            value = values[number] if number < len(values) else None
+            if copied is not None and value is copied:
+                self.stack.append(_OpenElement(None, None, {}, frozenset()))
+            elif copied is None and plan is not None and type(value) is plan.cls:
+                self.start_part(value, feature, plan, attributes)
+            else:
                 self.refuse(holder, f"{name!r} would be another object")
-            self.start_part(values[number], feature, plan, attributes)
         parent.read[name] = number + 1
         return True
 
     def start_part(self, element: Element, feature: FeaturePlan, plan: ClassPlan, attributes: dict[str, str]) -> None:
-        if self.is_copied(element):
-            wanted = attributes
-        else:
-            wanted = self.serializer.attributes(feature, plan, element, self.serializer.write_plan(plan, element))
-            wanted.pop(self.serializer.prefixes.xsi_type, None)
+        wanted = self.serializer.attributes(feature, plan, element, self.serializer.write_plan(plan, element))
+        wanted.pop(self.serializer.prefixes.xsi_type, None)
         if attributes != wanted:
             for key, value in attributes.items():
                 if wanted.get(key) != value and not self.is_meant(element, plan, key, value, wanted.get(key)):
@@ -157,10 +188,6 @@ class _ReadBackComparison:
                 if known is not None and element.__dict__.get(known.name) is not None:
                     self.refuse(element, f"the attribute {key!r} would be missing")
         self.stack.append(_OpenElement(element, plan, {}, frozenset(attributes)))
-
-    def is_copied(self, element: Element) -> bool:
-        """Whether the start tag was copied from the source, where it was read with these attributes."""
-        return self.merger is not None and element in self.merger.source.index and element not in self.document.changes.modified
 
     def is_meant(self, element: Element, plan: ClassPlan, key: str, value: str, wanted: str | None) -> bool:
         """Whether an attribute that EMF would not write like this has the value of the object, or is unknown content."""

@@ -8,6 +8,7 @@ formatted and commented, differs after saving only where the model differs.
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import Element
@@ -51,7 +52,7 @@ def document_text(document: Document, canonical: bool = False) -> str:
         raise WriteError(dict.fromkeys(writer.serializer.findings))
     is_as_read = document.source is not None and document.source.text == text and not document.changes.modified
     if not is_as_read:
-        check_read_back(text, document, writer.serializer, writer.merger)
+        check_read_back(writer.out, writer.copied, document, writer.serializer, writer.merger)
     return text
 
 
@@ -77,6 +78,10 @@ class _Writer:
         self.outside = (document.prolog, document.epilog)
         self.depth = 1
         self.out: list[str] = []
+        #: The objects whose text is copied with everything in it, by the number of the piece in `out`.
+        self.copied: dict[int, Element] = {}
+        #: Where the source has objects that were modified.
+        self.modified_places = sorted(place for each in self.modified if (place := self.index.get(each)) is not None)
 
     def document(self) -> str:
         """The whole text."""
@@ -137,7 +142,8 @@ class _Writer:
         place = self.index.get(element)
         if self.merger is None or self.source is None or (place is not None and not self.merger.is_same_part(tag, place)):
             place = None
-        elif place is not None and element not in self.modified:
+        elif place is not None and self.is_untouched(place):
+            self.copied[len(self.out)] = element
             self.out.append(self.source.text[self.source.start(place) : self.merger.end(place)])
             return
         if self.depth == MAX_DEPTH:
@@ -147,6 +153,13 @@ class _Writer:
         self.depth += 1
         self.whole_part(feature, element, place, indent)
         self.depth -= 1
+
+    def is_untouched(self, place: int) -> bool:
+        """Whether nothing was modified of an object in the source, and in it."""
+        assert self.source
+        number = bisect_left(self.modified_places, place)
+        following = self.modified_places[number : number + 1]
+        return not following or self.source.byte_starts[following[0]] >= self.source.byte_ends[place]
 
     def whole_part(self, feature: FeaturePlan, element: Element, place: int | None, indent: str) -> None:
         """Write an object that was modified, or that is not in the source."""
