@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import EventModel, rescaled
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Place, ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, StatedPlace
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class AnalysedTask:
     demand: MultiframeDemand
     priority: int = 0
     equal_priority: EqualPriority = EqualPriority.FIFO
-    place: Place | None = None
+    place: StatedPlace | None = None
     deadline: Time = 0
     slice: Time = 0
     activation_limit: int = 1

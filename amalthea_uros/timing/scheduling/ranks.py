@@ -29,10 +29,10 @@ from amalthea_uros.timing.scheduling.allocation import (
 from amalthea_uros.timing.scheduling.scheduled import (
     EqualPriority,
     OrderGap,
-    Place,
     ScheduledProcess,
     SchedulingContext,
     Server,
+    StatedPlace,
 )
 from amalthea_uros.units import Duration, Time
 
@@ -188,22 +188,22 @@ class SchedulingOrder:
             return OrderGap.OTHER_WITHOUT_DEADLINE if parameters.deadline else OrderGap.NO_DEADLINE
         return OrderGap.NO_PRIORITY if parameters.priority is None else OrderGap.OTHER_WITHOUT_PRIORITY
 
-    def _place(self, scheduler: Scheduler, parameters: _Parameters) -> Place | None:
+    def _place(self, scheduler: Scheduler, parameters: _Parameters) -> StatedPlace | None:
         """The stated place of a task in the order of its scheduler; None if it can have any place."""
         policy, priority, group = standard_policy(scheduler.policy), parameters.priority, parameters.of(scheduler, _GROUP)
         if policy == Policy.DEADLINE_MONOTONIC:
-            return Place(-parameters.deadline, -parameters.deadline) if parameters.deadline else None
+            return StatedPlace(-parameters.deadline, -parameters.deadline) if parameters.deadline else None
         if policy == Policy.EARLIEST_DEADLINE_FIRST or priority is None:
             return None
         if policy != Policy.OSEK or group in (None, _NO_GROUP):
-            return Place(priority, priority)
+            return StatedPlace(priority, priority)
         # Those of a grouping can be in its group.
         here = [each for each in self.system.mapping.tasks if deciding_scheduler(each.scheduler, self.system) == scheduler]
         members = [
             each for each in here if each.scheduler != scheduler.name or _of(scheduler, each.parameters, _GROUP) == group
         ]
         known = [found for each in members if (found := effective_priority(each, self.system)) is not None]
-        return Place(priority, max(known)) if len(known) == len(members) else None
+        return StatedPlace(priority, max(known)) if len(known) == len(members) else None
 
     def _incomplete(self) -> frozenset[str]:
         """The schedulers that decide for a task without the priority or the deadline that their policy needs."""

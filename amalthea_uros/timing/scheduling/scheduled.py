@@ -37,7 +37,7 @@ class OrderGap(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class StatedPlace:
     """The stated place of a task in an order of which a part is unknown; higher is served first.
 
     Attributes
@@ -71,7 +71,7 @@ class SchedulingContext:
     slice: Time = 0
     group: str | None = None
     order_gap: OrderGap | None = None
-    place: Place | None = None
+    place: StatedPlace | None = None
 
     @property
     def urgency(self) -> Rank:
@@ -107,7 +107,7 @@ class Server(SchedulingContext):
         return self.scheduler.name
 
 
-def is_below(place: Place | None, other: Place | None) -> bool:
+def is_below(place: StatedPlace | None, other: StatedPlace | None) -> bool:
     """Whether what has one place never executes while what has the other one is pending."""
     return place is not None and other is not None and place.ceiling < other.priority
 
