@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1050,
     "_version": 1,
     "am": 2,
-    "analyze": 8949,
+    "analyze": 8962,
     "bridge": 2871,
     "cli": 2582,
     "compare": 3817,

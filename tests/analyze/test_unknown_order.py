@@ -15,6 +15,7 @@ from support import SHARED
 from unit_player import UnitTask, longest_responses
 
 import amalthea_uros as amuros
+from amalthea_uros.analyze.explanations.processes import explain_process
 from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.perf.os import Parameter, Policy, Scheduler
@@ -82,6 +83,20 @@ def test_the_order_of_the_stated_priorities_is_kept():
     # 1 us of 10 us above 2 us of 20 us; 5 us of 40 us can be above both, or below both, or between them.
     high, low, unknown = analysed([(10, 1, True), (20, 2, True), (40, 5, True)], [3, 1, None]).processes
     assert [each.response.worst // US for each in (high, low, unknown)] == [1 + 5, 2 + 1 + 5, 5 + 1 + 2]
+
+
+def test_an_explanation_names_what_can_be_above():
+    analysis = analysed([(10, 1, True), (20, 2, True), (40, 25, True)], [3, 1, None])
+    high, unknown = explain_process(analysis, "T0"), explain_process(analysis, "T2")
+    assert [(share.name, share.time) for share in high.shares] == [("T2", 25 * US)]
+    # Loads are named where a deadline is not met for certain: 1 + 25 us of 10 us, but 25 + 4 + 2 * 2 us of 40 us.
+    assert {load.name for load in high.loads} == {"T0", "T2"}
+    assert unknown.loads == ()
+
+
+def test_what_has_no_bound_in_the_worst_order_is_told_to_state_it():
+    (origin,) = explain_process(analysed([(10, 6, True), (10, 6, True)], [None, None]), "T0").origins
+    assert origin.remedy == "State the priority of each task of its scheduler."
 
 
 def test_a_task_that_misses_its_deadline_in_some_order_only_says_so():

@@ -22,7 +22,7 @@ from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, rescaled
 from amalthea_uros.timing.jobs.executed import ends_with_execution
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, is_below, preemption
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, preemption
 
 
 def responses_on(core: str, solution: Solution) -> dict[str, Response]:
@@ -92,8 +92,7 @@ class _CoreAnalysis:
             processes = (item for item in level if isinstance(item, ScheduledProcess))
             unknown = [item for item in processes if not self.solution.is_analysable(item.name)]
             for item in level:
-                # What has a place below it delays it only where it can block.
-                beside = (other.name for other in unknown if blocking.is_possible or not is_below(other.place, item.place))
+                beside = (other.name for other in unknown if not blocking.is_below(other, item))
                 if cause := above or next(beside, None):
                     self._mark_unknown(item, f"depends on {cause!r}, which could not be analysed")
                     delayed.add(item.name)
@@ -278,7 +277,7 @@ class _CoreAnalysis:
             demand=demand,
             priority=ranks.index(item.rank),
             equal_priority=item.equal_priority if has_order else EqualPriority.UNKNOWN,
-            place=item.place if has_order else None,
+            place=item.place,
             deadline=(item.deadline or 0) * self.time_base if item.equal_priority is EqualPriority.EDF else 0,
             slice=item.slice * self.time_base,
             activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,
