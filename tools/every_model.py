@@ -1,9 +1,10 @@
 """Run commands over every model of a folder: no traceback, and what each file needs of time and memory.
 
-Usage: python tools/every_model.py [--corpus FOLDER] [--commands C,...] [--every N] [--seconds S] [--out RESULT.json] [FILE]...
+Usage: python tools/every_model.py [--corpus FOLDER] [--commands C,...] [--every N] [--seconds S] [--out RESULT.jsonl] [FILE]...
 
 Each command runs in a copy of this process, which has loaded the package, so that the times are those after start-up. The exit code is
-1 if an exception escapes, or if a command takes longer than is allowed.
+1 if an exception escapes, or if a command takes longer than is allowed. With --out, each outcome is appended at once, as a line of
+JSON, so that a run that is cut short has its results.
 """
 
 from __future__ import annotations
@@ -168,10 +169,11 @@ def main_of_tool() -> None:
     found = []
     for outcome in outcomes(paths, options.commands.split(","), options.seconds):
         found.append(outcome)
+        if options.out:
+            with options.out.open("a") as written:
+                print(json.dumps(asdict(outcome)), file=written)
         if outcome.cause or outcome.code not in _CODES:
             print(f"{outcome.command} {outcome.file}: {outcome.code} {outcome.cause}", flush=True)
-    if options.out:
-        options.out.write_text(json.dumps([asdict(outcome) for outcome in found], indent=1))
     print(f"{len(paths)} models, {len(found)} runs, {time.monotonic() - started:.0f} s")
     for command in dict.fromkeys(outcome.command for outcome in found):
         _summarize(command, [outcome for outcome in found if outcome.command == command])

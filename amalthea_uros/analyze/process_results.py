@@ -68,4 +68,5 @@ def _with_order(result: ProcessResult, solution: Solution) -> ProcessResult:
     if result.response is None or result.response.worst is None:
         return replace(result, reason=f"{item.order_gap}; {result.reason}")
     needed = rounded_time_text(result.response.worst, Rounding.UP)
-    return replace(result, reason=f"{item.order_gap}; as the lowest it needs up to {needed}")
+    where = "as the lowest" if item.place is None else "in the worst order"
+    return replace(result, reason=f"{item.order_gap}; {where} it needs up to {needed}")

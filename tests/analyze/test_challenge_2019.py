@@ -74,6 +74,29 @@ def test_waits_for_the_graphics_processor_are_bounded_once_its_policy_is_stated(
     assert [found[name].verdict for name in ("PRE_SFM_gpu_POST", "PRE_Detection_gpu_POST")] == ["met", "met"]
 
 
+def by_time_slices(detection, sfm):
+    return analysed(
+        "GPU_Sched.policy=PriorityBasedRoundRobin",
+        "Detection.priority=1",
+        f"Detection.time_slice={detection}us",
+        f"SFM.time_slice={sfm}us",
+    )
+
+
+def test_waits_for_the_graphics_processor_are_bounded_by_time_slices_that_are_short_enough():
+    found = by_time_slices(9000, 3950)
+    # 7.9 ms in two slices, a slice of the other one before each; 116 ms in 13 slices.
+    assert found["SFM"].response.worst == 7_900_000 * NS + 2 * 9_000_000 * NS
+    assert found["Detection"].response.worst == 116_000_000 * NS + 13 * 3_950_000 * NS
+    assert [found[name].verdict for name in ("PRE_SFM_gpu_POST", "PRE_Detection_gpu_POST")] == ["met", "met"]
+
+
+def test_the_time_slices_of_the_file_are_too_long_for_the_period_of_who_waits():
+    # `TimeSlice_Detection` and `TimeSlice_SFM`: two slices of 50 ms before the end of 7.9 ms, every 33 ms.
+    reason = by_time_slices(50_000, 7200)["PRE_SFM_gpu_POST"].reason
+    assert reason == "it waits for 'SFM', which 'SFM' sets after up to 107.9 ms, so that activations may be lost"
+
+
 @pytest.mark.parametrize("task", ["Localization", "Lane_detection"])
 def test_who_polls_for_a_task_of_its_own_priority_on_its_core_waits_for_ever(task):
     reason = analysed(*BY_PRIORITY)[f"PRE_{task}_gpu_POST"].reason

@@ -3,6 +3,7 @@
 All tasks run at 1 MHz, so that a tick takes 1 us.
 """
 
+from dataclasses import replace
 from itertools import permutations, product
 
 import pytest
@@ -14,9 +15,10 @@ from support import SHARED
 from unit_player import UnitTask, longest_responses
 
 import amalthea_uros as amuros
+from amalthea_uros.analyze.explanations.processes import explain_process
 from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.perf.os import Policy, Scheduler
+from amalthea_uros.perf.os import Parameter, Policy, Scheduler
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
@@ -77,6 +79,73 @@ def test_a_known_priority_beside_an_unknown_one():
     assert worst(analysed([(10, 2, True), (20, 5, True)], [5, None])) == [7 * US, 7 * US]
 
 
+def test_the_order_of_the_stated_priorities_is_kept():
+    # 1 us of 10 us above 2 us of 20 us; 5 us of 40 us can be above both, or below both, or between them.
+    high, low, unknown = analysed([(10, 1, True), (20, 2, True), (40, 5, True)], [3, 1, None]).processes
+    assert [each.response.worst // US for each in (high, low, unknown)] == [1 + 5, 2 + 1 + 5, 5 + 1 + 2]
+
+
+def test_an_explanation_names_what_can_be_above():
+    analysis = analysed([(10, 1, True), (20, 2, True), (40, 25, True)], [3, 1, None])
+    high, unknown = explain_process(analysis, "T0"), explain_process(analysis, "T2")
+    assert [(share.name, share.time) for share in high.shares] == [("T2", 25 * US)]
+    # Loads are named where a deadline is not met for certain: 1 + 25 us of 10 us, but 25 + 4 + 2 * 2 us of 40 us.
+    assert {load.name for load in high.loads} == {"T0", "T2"}
+    assert unknown.loads == ()
+
+
+def test_what_has_no_bound_in_the_worst_order_is_told_to_state_it():
+    (origin,) = explain_process(analysed([(10, 6, True), (10, 6, True)], [None, None]), "T0").origins
+    assert origin.remedy == "State the priority of each task of its scheduler."
+
+
+def test_a_task_that_misses_its_deadline_in_some_order_only_says_so():
+    # As the lowest of two it would need 6 us; below the one without a priority, 6 + 3.
+    first, _, _ = analysed([(8, 6, True), (80, 3, True), (80, 3, True)], [5, None, 1]).processes
+    assert (first.verdict, first.reason) == (
+        "unknown",
+        "a task of its scheduler has no priority; in the worst order it needs up to 9 us",
+    )
+
+
+def test_deadlines_that_the_scheduler_knows_keep_their_order():
+    tasks = [Proc("A", (ticks(1),), 10, deadline=10), Proc("B", (ticks(2),), 20, deadline=20), Proc("C", (ticks(5),), 40)]
+    scheduler = Scheduler(name="s0", policy=Policy.DEADLINE_MONOTONIC, cores=("c0",))
+    assert worst(analyze_system(system(*tasks, schedulers=[scheduler]))) == [6 * US, 8 * US, 8 * US]
+
+
+def test_unknown_activations_do_not_delay_what_is_above_them_in_any_order():
+    tasks = [Proc("A", (ticks(1),), 10, priority=3), Proc("B", (ticks(1),), priority=1), Proc("C", (ticks(5),), 40)]
+    high, low, unknown = analyze_system(system(*tasks)).processes
+    assert high.response.worst == 6 * US
+    assert (low.response, unknown.response) == (None, None)
+    assert unknown.reason == "it has no priority; depends on 'B', which could not be analysed"
+
+
+@pytest.mark.parametrize(
+    ("groups", "longest"),
+    [
+        # At the ceiling of its group, the task of priority 1 does not let that of priority 2 go first.
+        ({"Low": 7, "High": 7}, 3 + 4),
+        ({"Low": 7, "Unknown": 7}, 3 + 4 + 6),
+        # A group of one changes nothing.
+        ({"Low": 7}, 3 + 6),
+    ],
+)
+def test_a_task_of_a_group_counts_at_the_ceiling_of_its_group(groups, longest):
+    tasks = [("Middle", 3, 2), ("Low", 4, 1)]
+    tasks += [("High", 1, 3)] if "High" in groups else []
+    tasks += [("Unknown", 6, None)]
+    found = system(*(Proc(name, (ticks(demand),), 100, priority=priority) for name, demand, priority in tasks))
+    allocations = [
+        replace(each, parameters=(Parameter(name="taskGroup", values=(groups.get(each.task, 0),)),))
+        for each in found.mapping.tasks
+    ]
+    analysis = analyze_system(replace(found, mapping=replace(found.mapping, tasks=tuple(allocations))))
+    others = 1 + 6 if "High" in groups else 0
+    assert analysis["Middle"].response.worst == (longest + others) * US
+
+
 def test_nothing_is_simulated_in_an_order_that_is_not_stated():
     result = amuros.simulate(amuros.load(NO_PRIORITY), duration="100 ms")
     assert [finding.message for finding in result.findings if finding.rule == "SIM001"] == [
@@ -115,6 +184,23 @@ def test_no_order_exceeds_the_bound(tasks, data):
         for found, bound in zip(analysed(tasks, order, offsets).processes, bounds, strict=True):
             # Bounds of a known order need not be tight.
             assert bound is None or found.response.claim is not Claim.EXACT or found.response.worst <= bound
+
+
+@examples(10)
+@given(TASKS, st.data())
+def test_no_place_of_those_without_priority_exceeds_the_bound(tasks, data):
+    offsets = [data.draw(st.integers(0, period - 1)) for period, _, _ in tasks]
+    stated = [data.draw(st.sampled_from([1, 3, None])) for _ in tasks]
+    if None in stated:
+        bounds = worst(analysed(tasks, stated, offsets))
+        for order in places(stated):
+            for found, bound in zip(played(tasks, order, offsets), bounds, strict=True):
+                assert bound is None or found * US <= bound
+
+
+def places(stated):
+    """The priorities 1 and 3 with those that are not stated: above, below, between, and the same."""
+    return product(*(range(5) if each is None else (each,) for each in stated))
 
 
 @examples(10)

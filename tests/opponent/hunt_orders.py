@@ -1,14 +1,14 @@
 """Bounds that hold for any order of priorities or deadlines, against all orders of many random systems.
 
 `python -m opponent.hunt_orders [SYSTEMS] [SEED]` with `tests` and `tests/analyze` on the path: each system of two to four tasks on one
-core is played in every order of distinct priorities, and with deadlines of a grid.
+core is played in every order of distinct priorities, with deadlines of a grid, and with every place of those that have no priority.
 """
 
 import sys
 from itertools import permutations, product
 from random import Random
 
-from test_unknown_order import analysed, played, worst
+from test_unknown_order import analysed, places, played, worst
 
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.units import MICROSECOND as US
@@ -26,11 +26,13 @@ def random_tasks(random):
 
 def violations(tasks, offsets):
     """What exceeds the bounds: how it was played, and the response times with the bounds."""
-    for policy, orders, deadlines in (
-        (Policy.OSEK, permutations(range(len(tasks))), None),
-        (Policy.EARLIEST_DEADLINE_FIRST, product((1, 4, 11), repeat=len(tasks)), True),
+    none, stated = [None] * len(tasks), [(1, 3, None)[sum(task[:2]) % 3] for task in tasks]
+    for policy, known, orders, deadlines in (
+        (Policy.OSEK, none, permutations(range(len(tasks))), None),
+        (Policy.OSEK, stated, places(stated) if None in stated else (), None),
+        (Policy.EARLIEST_DEADLINE_FIRST, none, product((1, 4, 11), repeat=len(tasks)), True),
     ):
-        bounds = worst(analysed(tasks, [None] * len(tasks), offsets, policy))
+        bounds = worst(analysed(tasks, known, offsets, policy))
         for order in orders:
             seen = played(tasks, [0] * len(tasks), offsets, order) if deadlines else played(tasks, order, offsets)
             if any(bound is not None and value * US > bound for value, bound in zip(seen, bounds, strict=True)):

@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.core_schedule import METHOD, CoreSchedule
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
@@ -75,10 +76,10 @@ def _worst_job(schedule: CoreSchedule, name: str) -> int:
 def _loads(solution: Solution, scheduled: ScheduledProcess) -> list[Load]:
     """The loads at the rank of a process or higher, largest first; scheduler decisions interrupt all of them."""
     context = solution.context
-    time_base = context.demand_model.time_base(scheduled.core)
+    time_base, blocking = context.demand_model.time_base(scheduled.core), Blocking.of(context.on_core(scheduled.core), solution)
     found = []
     for item in context.served(scheduled.core, scheduled.server):
-        if item.rank < scheduled.rank:
+        if blocking.is_below(item, scheduled):
             continue
         if isinstance(item, Server):
             found.append(Load(name=item.name, priority=item.rank[-1], utilisation=Fraction(item.budget, item.period)))
@@ -129,9 +130,9 @@ def _in_window(solution: Solution, scheduled: ScheduledProcess, response: Respon
     context = solution.context
     time_base = context.time_base(scheduled.name)
     here = context.on_core(scheduled.core)
-    found = []
+    blocking, found = Blocking.of(here, solution), []
     for other in here:
-        if other.name == scheduled.name or other.rank < scheduled.rank:
+        if other.name == scheduled.name or blocking.is_below(other, scheduled):
             continue
         if other.server != scheduled.server or other.name not in solution.event_models:
             return []
@@ -278,6 +279,9 @@ class _OriginSearch:
 
     def _origin(self, name: str, kind: OriginKind, reason: str) -> Origin:
         remedy = self._demand_remedy(name) if kind is OriginKind.DEMAND else _REMEDIES.get(kind, "")
+        gap = self.context.scheduled[name].order_gap if name in self.context.scheduled else None
+        if not remedy and gap is not None:
+            remedy = f"State the {'priority' if gap.is_of_priority else 'deadline'} of each task of its scheduler."
         return Origin(process=name, kind=kind, reason=reason, remedy=remedy)
 
     def _demand_remedy(self, name: str) -> str:

@@ -23,7 +23,14 @@ from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.blocking.regions import NonPreemptiveRegions, ProcessRegions, RegionKind
 from amalthea_uros.timing.demand.model import DemandModel
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, SchedulingContext, preemption
+from amalthea_uros.timing.scheduling.scheduled import (
+    EqualPriority,
+    Rank,
+    ScheduledProcess,
+    SchedulingContext,
+    is_below,
+    preemption,
+)
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -112,6 +119,10 @@ class Blocking:
         uses = self.protection[item.name]
         is_preemptive = preemption(item) is Preemption.PREEMPTIVE and item.group is None
         return not is_preemptive or bool(uses.semaphores) or uses.has_non_interruptible_group
+
+    def is_below(self, other: SchedulingContext, item: SchedulingContext) -> bool:
+        """Whether something is never served before an item: its rank is lower or, where nothing blocks, its place in the same one."""
+        return other.rank < item.rank or (not self.is_possible and is_below(other.place, item.place))
 
     def level(self, item: SchedulingContext) -> InterferenceLevel:
         """The level of the busy window of a process or server."""

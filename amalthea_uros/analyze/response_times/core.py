@@ -64,35 +64,42 @@ class _CoreAnalysis:
     def responses(self, server: str | None, supply: Supply) -> dict[str, Response]:
         """The response times of processes on the core itself, or in the budget of a server, including those of nested servers."""
         here = self.context.served(self.core, server)
-        usable, blocking = self._known(here), self._blocking(here)
-        # What is blocked for an unknown time delays others nevertheless.
+        blocking = self._blocking(here)
+        usable, delayed = self._known(here, blocking)
+        # What is delayed for an unknown time delays others nevertheless.
         servers = [item for item in here if isinstance(item, Server)]
-        blocked = [item for item in usable if self._is_blocked_for_unknown_time(item, blocking, servers)]
+        delayed |= {item.name for item in usable if self._is_blocked_for_unknown_time(item, blocking, servers)}
         found = self.bounds(usable, blocking, supply)
-        by_name = {item.name: response for item, response in zip(usable, found, strict=True) if item not in blocked}
+        by_name = {item.name: response for item, response in zip(usable, found, strict=True) if item.name not in delayed}
         for item in usable:
-            if isinstance(item, Server) and item not in blocked:
+            if isinstance(item, Server) and item.name not in delayed:
                 by_name |= self._inside(item, by_name.pop(item.name))
         return by_name
 
-    def _known(self, here: Sequence[ScheduledProcess | Server]) -> list[ScheduledProcess | Server]:
-        """The items that depend on no unknown process of the same or a higher rank; the others are marked unknown."""
+    def _known(
+        self, here: Sequence[ScheduledProcess | Server], blocking: Blocking
+    ) -> tuple[list[ScheduledProcess | Server], set[str]]:
+        """The known items below no unknown process of a higher rank; the names of all that depend on one, now marked unknown."""
         found: list[ScheduledProcess | Server] = []
-        unknown = self.solution.intruder(self.core, above_isrs=True)
+        delayed: set[str] = set()
+        above = self.solution.intruder(self.core, above_isrs=True)
         for (is_isr, _), group in groupby(
             here, key=lambda item: (isinstance(item, ScheduledProcess) and item.is_isr, item.rank)
         ):
             level = list(group)
             if not is_isr:
-                unknown = unknown or self.solution.intruder(self.core, above_isrs=False)
-            processes = (item.name for item in level if isinstance(item, ScheduledProcess))
-            unknown = unknown or next((name for name in processes if not self.solution.is_analysable(name)), None)
-            if unknown is None:
-                found += level
-            else:
-                for item in level:
-                    self._mark_unknown(item, f"depends on {unknown!r}, which could not be analysed")
-        return found
+                above = above or self.solution.intruder(self.core, above_isrs=False)
+            processes = (item for item in level if isinstance(item, ScheduledProcess))
+            unknown = [item for item in processes if not self.solution.is_analysable(item.name)]
+            for item in level:
+                beside = (other.name for other in unknown if not blocking.is_below(other, item))
+                if cause := above or next(beside, None):
+                    self._mark_unknown(item, f"depends on {cause!r}, which could not be analysed")
+                    delayed.add(item.name)
+            if above is None:
+                found += [item for item in level if item not in unknown]
+                above = unknown[0].name if unknown else None
+        return found, delayed
 
     def _blocking(self, here: Sequence[ScheduledProcess | Server]) -> Blocking:
         """The blocking on the core itself or in a server; what is in a server waits and keeps others off at the rank of the server."""
@@ -270,6 +277,7 @@ class _CoreAnalysis:
             demand=demand,
             priority=ranks.index(item.rank),
             equal_priority=item.equal_priority if has_order else EqualPriority.UNKNOWN,
+            place=item.place,
             deadline=(item.deadline or 0) * self.time_base if item.equal_priority is EqualPriority.EDF else 0,
             slice=item.slice * self.time_base,
             activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,

@@ -37,7 +37,7 @@ ANY_ORDER = "busy window, any order of priorities"
 BUSY_PERIOD = "longest busy period, of jobs that exclude each other the longest"
 ASSUMPTION = (
     "where tasks of a scheduler have no priority, or no deadline that it knows, the response times of all its tasks hold for any "
-    "order of priorities"
+    "order of priorities that keeps the stated ones"
 )
 #: Busy windows with more jobs are considered unbounded: the load is then so close to 1 that a bound would be useless.
 MAX_JOBS = 20_000
@@ -102,7 +102,7 @@ def of_completions(
 
 
 def in_any_order(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference, blocking: Time = 0) -> Response:
-    """The response time of a task among others, where the order of their priorities is not stated.
+    """The response time of a task among others, where it is not stated which of them is above it.
 
     A core that is never idle while a job is pending executes in a busy period only what is activated in it. So the busy window of
     the task as the lowest one holds for each order of priorities, also if tasks share one or keep each other off, and if the order
@@ -112,7 +112,8 @@ def in_any_order(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Int
     found, _ = response_time(task, Interference.of([*higher.tasks, *others], higher.supply), blocking)
     if found.is_overload:
         # Which of the tasks is the lowest is unknown.
-        reason = f"as the lowest, it has no bound: {found.reason.removeprefix('overload: ')}"
+        where = "as the lowest" if task.place is None else "in the worst order"
+        reason = f"{where}, it has no bound: {found.reason.removeprefix('overload: ')}"
         found = replace(found, is_overload=False, reason=reason)
     return replace(found, best=task.demand.best, method=ANY_ORDER, claim=Claim.BOUND)
 

@@ -15,7 +15,15 @@ from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.perf.software import Preemption
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.response import Claim, Response
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, is_preemptive, preemption
+from amalthea_uros.timing.scheduling.scheduled import (
+    EqualPriority,
+    Rank,
+    ScheduledProcess,
+    Server,
+    is_below,
+    is_preemptive,
+    preemption,
+)
 from amalthea_uros.units import Time
 
 #: The methods for a task among others of its priority, given the tasks of higher priority and the blocking.
@@ -50,7 +58,8 @@ def response_times(
             continue
         start = 0
         for index in level:
-            others = [tasks[other] for other in level if other != index]
+            place = tasks[index].place
+            others = [tasks[other] for other in level if other != index and not is_below(tasks[other].place, place)]
             method = METHODS[tasks[index].equal_priority]
             found[index] = method(tasks[index], others, higher, blocking[index])
     return [found[index] for index in range(len(tasks))]

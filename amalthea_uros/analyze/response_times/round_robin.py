@@ -43,7 +43,7 @@ def response_time(task: AnalysedTask, others: Sequence[AnalysedTask], higher: In
         if end > LIMIT:
             break
         completions.append(end)
-        if end <= task.events.delta_min(job + 1):
+        if task.is_alone or end <= task.events.delta_min(job + 1):
             return of_completions(task, completions, blocking, METHOD, SOURCE)
     reason = "its busy window does not end: the tasks need all of the core"
     return Response(worst=None, best=task.demand.best, method=METHOD, source=SOURCE, reason=reason)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import EventModel, rescaled
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
+from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, StatedPlace
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ class AnalysedTask:
     events : activations
     priority : higher numbers are served first
     equal_priority : how tasks of the same priority are served; equal for all of them
+    place : among those of the same priority, if their order is known in part
     deadline : relative to the activation; used by EDF
     slice : length of a time slice; used by round robin
     is_alone : whether each job is activated only after the one before it has executed all of its demand
@@ -39,6 +40,7 @@ class AnalysedTask:
     demand: MultiframeDemand
     priority: int = 0
     equal_priority: EqualPriority = EqualPriority.FIFO
+    place: StatedPlace | None = None
     deadline: Time = 0
     slice: Time = 0
     activation_limit: int = 1

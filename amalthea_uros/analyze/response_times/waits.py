@@ -36,7 +36,7 @@ from amalthea_uros.timing.demand.multiframe import NOTHING, DemandFrame, Multifr
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
 from amalthea_uros.timing.waits import WITHOUT_BOUND, AwaitedEvent, WaitingProcess
-from amalthea_uros.units import Time
+from amalthea_uros.units import Rounding, Time, rounded_time_text
 
 SOURCE = "Chen, Nelissen, Huang and others 2019"
 SEGMENTS = "busy windows between waits, fixed priorities, preemptive"
@@ -116,7 +116,8 @@ def _longest(name: str, awaited: AwaitedEvent, solution: Solution, responses: Ma
     if response.worst is None:
         raise UnknownError(f"{waits}, and that has no bounded response time")
     if _can_lose(name, awaited, solution, responses):
-        raise UnknownError(f"{waits}, and that may lose activations")
+        longest = rounded_time_text(response.worst, Rounding.UP)
+        raise UnknownError(f"{waits} after up to {longest}, so that activations may be lost")
     return response.worst + (awaited.gap or 0)
 
 

@@ -26,7 +26,14 @@ from amalthea_uros.timing.scheduling.allocation import (
     effective_priority,
     standard_policy,
 )
-from amalthea_uros.timing.scheduling.scheduled import EqualPriority, OrderGap, ScheduledProcess, SchedulingContext, Server
+from amalthea_uros.timing.scheduling.scheduled import (
+    EqualPriority,
+    OrderGap,
+    ScheduledProcess,
+    SchedulingContext,
+    Server,
+    StatedPlace,
+)
 from amalthea_uros.units import Duration, Time
 
 #: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
@@ -119,6 +126,7 @@ class SchedulingOrder:
             slice=found.slice,
             group=found.group,
             order_gap=found.order_gap,
+            place=found.place,
         )
 
     def _period(self, process: Process) -> Time | None:
@@ -156,7 +164,8 @@ class SchedulingOrder:
         if needed == _DEADLINE and not parameters.deadline and self._serves_one(scheduler):
             return replace(base, rank=(*base.rank, 0))
         if gap := self._order_gap(scheduler, parameters):
-            return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.UNKNOWN, order_gap=gap)
+            place = self._place(scheduler, parameters)
+            return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.UNKNOWN, order_gap=gap, place=place)
         if policy == Policy.OSEK and parameters.of(scheduler, _GROUP) == _NO_GROUP:
             self.notes.assume(f"task group {_NO_GROUP} of OSEK schedulers means that a task is in no group")
         return by_policy(scheduler, parameters, base)
@@ -165,7 +174,8 @@ class SchedulingOrder:
         """The scheduling of a task or scheduler in the budget of a server, by priority."""
         server = self._server(scheduler, above)
         if gap := self._order_gap(scheduler, parameters):
-            return SchedulingContext(server=server.name, rank=(0,), equal_priority=EqualPriority.UNKNOWN, order_gap=gap)
+            unknown, place = EqualPriority.UNKNOWN, self._place(scheduler, parameters)
+            return SchedulingContext(server=server.name, rank=(0,), equal_priority=unknown, order_gap=gap, place=place)
         if parameters.priority is None and self._serves_one(scheduler):
             return SchedulingContext(server=server.name, rank=())
         return SchedulingContext(server=server.name, rank=(parameters.required(parameters.priority, "priority"),))
@@ -177,6 +187,23 @@ class SchedulingOrder:
         if _NEEDED[standard_policy(scheduler.policy) or ""] == _DEADLINE:
             return OrderGap.OTHER_WITHOUT_DEADLINE if parameters.deadline else OrderGap.NO_DEADLINE
         return OrderGap.NO_PRIORITY if parameters.priority is None else OrderGap.OTHER_WITHOUT_PRIORITY
+
+    def _place(self, scheduler: Scheduler, parameters: _Parameters) -> StatedPlace | None:
+        """The stated place of a task in the order of its scheduler; None if it can have any place."""
+        policy, priority, group = standard_policy(scheduler.policy), parameters.priority, parameters.of(scheduler, _GROUP)
+        if policy == Policy.DEADLINE_MONOTONIC:
+            return StatedPlace(-parameters.deadline, -parameters.deadline) if parameters.deadline else None
+        if policy == Policy.EARLIEST_DEADLINE_FIRST or priority is None:
+            return None
+        if policy != Policy.OSEK or group in (None, _NO_GROUP):
+            return StatedPlace(priority, priority)
+        # Those of a grouping can be in its group.
+        here = [each for each in self.system.mapping.tasks if deciding_scheduler(each.scheduler, self.system) == scheduler]
+        members = [
+            each for each in here if each.scheduler != scheduler.name or _of(scheduler, each.parameters, _GROUP) == group
+        ]
+        known = [found for each in members if (found := effective_priority(each, self.system)) is not None]
+        return StatedPlace(priority, max(known)) if len(known) == len(members) else None
 
     def _incomplete(self) -> frozenset[str]:
         """The schedulers that decide for a task without the priority or the deadline that their policy needs."""

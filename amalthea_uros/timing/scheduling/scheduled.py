@@ -36,6 +36,19 @@ class OrderGap(StrEnum):
         return self in (OrderGap.NO_PRIORITY, OrderGap.OTHER_WITHOUT_PRIORITY)
 
 
+@dataclass(frozen=True, slots=True)
+class StatedPlace:
+    """The stated place of a task in an order of which a part is unknown; higher is served first.
+
+    Attributes
+    ----------
+    ceiling : at which it executes, the highest of its group
+    """
+
+    priority: int
+    ceiling: int
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchedulingContext:
     """How something is scheduled.
@@ -47,6 +60,7 @@ class SchedulingContext:
     equal_priority, slice : how tasks of the same rank share the core
     group : its members do not preempt each other
     order_gap : why the order among those of the same rank is unknown; None if it is known
+    place : among those with an unknown order, where it is stated for some; None: it can have any place
     """
 
     core: str = ""
@@ -57,6 +71,7 @@ class SchedulingContext:
     slice: Time = 0
     group: str | None = None
     order_gap: OrderGap | None = None
+    place: StatedPlace | None = None
 
     @property
     def urgency(self) -> Rank:
@@ -90,6 +105,11 @@ class Server(SchedulingContext):
     def name(self) -> str:
         """The name of the scheduler."""
         return self.scheduler.name
+
+
+def is_below(place: StatedPlace | None, other: StatedPlace | None) -> bool:
+    """Whether what has one place never executes while what has the other one is pending."""
+    return place is not None and other is not None and place.ceiling < other.priority
 
 
 def preemption(item: ScheduledProcess) -> Preemption:
