@@ -86,7 +86,8 @@ def _descriptions() -> Sequence[Files]:
 def _own_files() -> Sequence[Files]:
     """Descriptions with files of their own for all that has a name: board, operating system, middleware and measured times."""
     platforms = ROOT / "amalthea_uros" / "platforms"
-    middleware = b"amuros: 1\nprofile: mine\nbase: xrce-dds\nsizes: {message_header: 8 B}\nsending: {heartbeat: 150 ms}\noptions: {MTU: 256}\n"
+    middleware = b"amuros: 1\nprofile: mine\nbase: xrce-dds\nsending: {heartbeat: 150 ms}\n"
+    middleware += b"sizes: {message_header: 8 B}\noptions: {MTU: 256}\n"
     found = []
     for board, rtos, times in (("esp32", "freertos", "ra6m5-uart"), ("nucleo-f767zi", "zephyr", "pico2w-usb")):
         found.append(
