@@ -10,9 +10,12 @@ from contextlib import suppress
 from functools import update_wrapper
 from math import inf
 from pathlib import Path
-from typing import Generic, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar, cast
 
 from amalthea_uros._internal.machine_code import LOADING, CompilationEffort, is_available
+
+if TYPE_CHECKING:
+    from numba.core.types import Type
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -75,7 +78,7 @@ class Compiled(Generic[P, R]):
         return self._function(*args, **kwargs)
 
 
-def machine_code(function: Callable[P, R], signature: object) -> Callable[P, R]:
+def machine_code(function: Callable[P, R], signature: str | tuple[Type, ...]) -> Callable[P, R]:
     """A function as machine code, which numba keeps for the next time where it can.
 
     Where it cannot, as on a full disk, the machine code is used all the same. What it has kept may be damaged, as after a loss of
@@ -94,7 +97,7 @@ def machine_code(function: Callable[P, R], signature: object) -> Callable[P, R]:
     try:
         machine.compile(signature)
     except Exception:  # damaged files end in any exception; a function that cannot be compiled fails in its first call again
-        if not machine.signatures:
+        if not machine.signatures and machine.stats.cache_path:
             for index in Path(machine.stats.cache_path).glob(f"*.{function.__qualname__}-*.nbi"):
                 with suppress(OSError):
                     index.unlink()
