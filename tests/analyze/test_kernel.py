@@ -2,14 +2,10 @@
 
 import dataclasses
 import os
-import subprocess
-import sys
 
 import pytest
-from effort import IS_THOROUGH
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from support import ROOT
 
 from amalthea_uros._internal.compiled import Compiled, compiled, machine_code
 from amalthea_uros.analyze.response_times import kernel, schedule
@@ -142,33 +138,3 @@ def test_machine_code_that_cannot_be_kept_is_used(tmp_path, monkeypatch):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(os, "replace", full)
     assert not kept_half()
-
-
-#: A run of the simulation and an analysis as machine code.
-COMPILING = """
-from unittest.mock import patch
-from amalthea_uros import analyze_files, simulate
-from amalthea_uros._internal.compiled import Compiled
-from amalthea_uros.analyze.response_times import kernel
-from amalthea_uros.simulate.kernel import machine_code
-for found in vars(kernel).values():
-    if isinstance(found, Compiled):
-        found.compile()
-with patch.object(machine_code, "is_worth_it", lambda *_: True):
-    print(simulate("PATH", "100 ms").to_json(), analyze_files("PATH").to_json())
-"""
-
-
-@pytest.mark.skipif(not IS_THOROUGH, reason="it compiles the kernel eight times, which takes minutes")
-def test_eight_processes_that_fill_an_empty_folder_at_once_give_the_same_answer(tmp_path):
-    code = COMPILING.replace("PATH", str(ROOT / "samples" / "bodas-test-advanced.yaml"))
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(ROOT)}
-
-    def started():
-        return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=environment)
-
-    both = [[process.communicate()[0] for process in [started() for _ in range(count)]] for count in (8, 1)]
-    answers = {answer for answers in both for answer in answers}
-    assert len(answers) == 1
-    assert answers.pop().startswith("{")
-    assert not list(tmp_path.rglob("*.tmp.*"))
