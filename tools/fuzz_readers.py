@@ -161,6 +161,7 @@ READERS: dict[str, Callable[[Path], object]] = {
     "description-checked": lambda path: check_files(path),
     "iprx": lambda path: open_system([path]),
     "meta": lambda path: check_colcon_meta(ROOT / "samples" / "drive-and-lift.yaml", path),
+    "own-files": lambda path: describe(path / "app.yaml"),
     "older-amxmi": lambda path: open_system([path]),
     "recording": import_recording,
     "sources": import_code,

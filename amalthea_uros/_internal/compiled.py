@@ -6,12 +6,16 @@ A function runs as Python until that has taken about as long as machine code of 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import update_wrapper
 from math import inf
 from pathlib import Path
-from typing import Generic, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar, cast
 
 from amalthea_uros._internal.machine_code import LOADING, CompilationEffort, is_available
+
+if TYPE_CHECKING:
+    from numba.core.types import Type
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -31,7 +35,7 @@ class Compiled(Generic[P, R]):
 
     def __init__(self, function: Callable[P, R], cost: int) -> None:
         update_wrapper(self, function)
-        self._function = function
+        self._python = self._function = function
         self._cost = cost
         name = function.__name__
         self.effort = CompilationEffort(name, [Path(function.__code__.co_filename)], name, COMPILING)
@@ -63,13 +67,42 @@ class Compiled(Generic[P, R]):
         """Make it machine code from now on, if numba is there."""
         self._limit = inf
         if is_available() and not self.is_compiled:
-            from numba import njit
-
-            try:
-                self._function = cast("Callable[P, R]", njit(cache=True)(self._function))
-            except RuntimeError:  # there is no folder in which numba could keep the machine code
-                self._function = cast("Callable[P, R]", njit(self._function))
             self.is_compiled = True
+            self._function = self._compiled_call
+
+    def _compiled_call(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """The first call of the machine code, which shows the types of the parameters."""
+        from numba import typeof
+
+        self._function = machine_code(self._python, tuple(map(typeof, args)))
+        return self._function(*args, **kwargs)
+
+
+def machine_code(function: Callable[P, R], signature: str | tuple[Type, ...]) -> Callable[P, R]:
+    """A function as machine code, which numba keeps for the next time where it can.
+
+    Where it cannot, as on a full disk, the machine code is used all the same. What it has kept may be damaged, as after a loss of
+    power; that is removed, so that it is kept again the next time.
+
+    Parameters
+    ----------
+    signature : the types of the parameters, as numba has them
+    """
+    from numba import njit
+
+    try:
+        machine = njit(cache=True, nogil=True)(function)
+    except RuntimeError:  # there is no folder in which numba could keep it
+        return cast("Callable[P, R]", njit(nogil=True)(function))
+    try:
+        machine.compile(signature)
+    except Exception:  # damaged files end in any exception; a function that cannot be compiled fails in its first call again
+        if not machine.signatures and machine.stats.cache_path:
+            for index in Path(machine.stats.cache_path).glob(f"*.{function.__qualname__}-*.nbi"):
+                with suppress(OSError):
+                    index.unlink()
+            return cast("Callable[P, R]", njit(nogil=True)(function))
+    return cast("Callable[P, R]", machine)
 
 
 def compiled(cost: int) -> Callable[[Callable[P, R]], Compiled[P, R]]:

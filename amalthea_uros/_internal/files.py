@@ -242,6 +242,14 @@ def check_writable(path: Path) -> None:
             _staged(path, b"", undo)
 
 
+def result_path(path: Path, *, is_complete: bool) -> Path:
+    """Where a result is written: one that is not complete, as after an interruption, never replaces a former one.
+
+    It is written beside it, as `runs.partial.csv`; a pipe, a device or an open file gets it itself.
+    """
+    return path if is_complete or is_stream(path) else path.with_suffix(f".partial{path.suffix}")
+
+
 def is_stream(path: Path) -> bool:
     """Whether a path is a pipe, a device or an open file of this process, which must not become another file."""
     if _descriptor(path) is not None:

@@ -8,10 +8,11 @@ from typing import Any
 
 import click
 
+from amalthea_uros._internal.files import result_path
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.key_completion import OfKey
 from amalthea_uros.cli.options import paths_argument, seed_option, settings_options, workers_options
-from amalthea_uros.cli.output import Output, checked_outputs, output_option, show_line, show_result
+from amalthea_uros.cli.output import Output, checked_outputs, output_option, refuse_input, show_line, show_result
 from amalthea_uros.cli.parameters import MODEL_OR_DESCRIPTION, PICTURE, POSITIVE, Parsed
 from amalthea_uros.cli.patience import working
 from amalthea_uros.design.changes.change import SWEEP_EXAMPLE, parse_sweep
@@ -113,8 +114,8 @@ def optimize(
 
     MODEL_OR_YAML is an app.yaml, one or more .amxmi files, or a folder of .amxmi files. Every proposal is proved by the full analysis,
     and shown with all that it improves and makes worse. That nothing better, or nothing at all, exists is only said if it is proved.
-    The exit code is 1 if no design was found that meets all limits. After Ctrl-C the best design so far is shown, and the exit code is
-    130.
+    The exit code is 1 if no design was found that meets all limits. After Ctrl-C the best design so far is shown, files are written
+    beside those that are named, as result.partial.json, and the exit code is 130.
     """
     outputs = checked_outputs(outputs, [("-o", target), ("--pareto", pareto)])
     wishes["proposals"] = max(wishes["proposals"], number if target is not None else 1)
@@ -125,12 +126,16 @@ def optimize(
             progress=progress.reach,
             **wishes,
         )
+    is_finished = result.search.ended != ENDED_BY_USER
     if pareto is not None:
         from amalthea_uros.report.pictures.pareto import draw_pareto
 
-        save_text(pareto, draw_pareto(result))
-    show_result(result, outputs, closing="" if is_met(result) else optimization_line(result))
-    if target is not None:
+        save_text(result_path(pareto, is_complete=is_finished), draw_pareto(result))
+    closing = "" if is_met(result) else optimization_line(result)
+    show_result(result, outputs, closing=closing, is_complete=is_finished)
+    if target is not None and (is_finished or number <= len(result.proposals)):
+        target = result_path(target, is_complete=is_finished)
+        refuse_input(target, "-o")
         write_proposal(result, number, target)
         show_line(f"wrote proposal {number} to {target}")
-    sys.exit(INTERRUPTED if result.search.ended == ENDED_BY_USER else 0 if is_met(result) else 1)
+    sys.exit(INTERRUPTED if not is_finished else 0 if is_met(result) else 1)

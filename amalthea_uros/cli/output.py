@@ -21,6 +21,7 @@ from amalthea_uros._internal.files import (
     is_standard_output,
     is_stream,
     resolved,
+    result_path,
 )
 from amalthea_uros.cli.parameters import INPUT, output_path
 from amalthea_uros.diagnostics import Finding, Severity
@@ -156,17 +157,23 @@ def checked_outputs(
     return outputs
 
 
-def show_result(result: Any, outputs: Sequence[Output], as_text: object | None = None, closing: str = "") -> None:
+def show_result(
+    result: Any, outputs: Sequence[Output], as_text: object | None = None, closing: str = "", *, is_complete: bool = True
+) -> None:
     """Write a result, after its findings and what changes did on standard error.
 
     Parameters
     ----------
     as_text : as for `write_outputs`
     closing : a line for people who do not see it in the text of the result; "" for none
+    is_complete : False after an interruption; files are written beside those that are named, which may have whole results
     """
     show_findings(result.findings)
     show_differences(getattr(result, "differences", ()))
-    write_outputs(outputs, result, as_text)
+    placed = [output._replace(path=result_path(output.path, is_complete=is_complete)) for output in outputs]
+    write_outputs(placed, result, as_text)
+    for output in placed if not is_complete else ():
+        show_partial("result", output.path)
     if closing and not (as_text is None and shows_text(outputs)):
         show_line(closing)
 
@@ -202,7 +209,13 @@ def write_runs(table: Path | None, result: CampaignResult | SweepResult) -> None
 
     written = write_table(table, result.rows, is_complete=result.is_complete)
     if written is not None and not result.is_complete:
-        click.echo(f"the table is not complete; it is in {str(written)!r}", err=True)
+        show_partial("table", written)
+
+
+def show_partial(what: str, path: Path) -> None:
+    """Say which file has something that is not complete."""
+    if not is_stream(path):
+        show_line(f"the {what} is not complete; it is in {str(path)!r}")
 
 
 def refuse_input(path: Path, option: str) -> None:

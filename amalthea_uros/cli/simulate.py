@@ -217,7 +217,7 @@ def _show_campaign(result: CampaignResult, table: Path | None, outputs: Sequence
     from amalthea_uros.report.documents.simulation import campaign_line
 
     write_runs(table, result)
-    show_result(result, outputs, closing=campaign_line(result) if result.is_failed else "")
+    show_result(result, outputs, closing=campaign_line(result) if result.is_failed else "", is_complete=result.is_complete)
     if result.is_complete:
         return 1 if result.is_failed else 0
     click.echo(f"interrupted: {len(result.outcomes):,} of {counted(result.planned, 'run')} finished", err=True)

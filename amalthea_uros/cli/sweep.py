@@ -96,7 +96,7 @@ def sweep(
 
         for quantity, path in pictures:
             save_text(path, sweep_picture(result, quantity))
-    show_result(result, outputs, closing=_closing(result))
+    show_result(result, outputs, closing=_closing(result), is_complete=result.is_complete)
     sys.exit(_code(result, fail_on))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.paths import StrPath, is_description
@@ -37,7 +36,7 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
     WriteError : the file cannot be written.
     """
     from amalthea_uros.bridge.extract import extract
-    from amalthea_uros.design.model_attributes.editable import ModelSource
+    from amalthea_uros.design.model_attributes.editable import ModelSource, ModelTexts
     from amalthea_uros.design.model_attributes.origin import ModelOrigin
     from amalthea_uros.xmi.save import save
 
@@ -65,7 +64,7 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
     if given is None:
         _refuse_migrated(model)
     else:
-        model = _copied(model)  # the caller keeps the model without the changes
+        model = ModelTexts.of(model).read()  # the caller keeps the model without the changes
     origin = ModelOrigin(Configuration(extract(model).system, settings), ModelSource(model, is_own=True))
     divided = origin.divided(changes)
     with origin.editable.edited(divided.attributes):
@@ -85,18 +84,6 @@ def _write_edited(opened: SystemInput, changes: Sequence[Change], settings: Sett
         return
     edited, assumed = origin.rebuilt(changes)
     save(build_model(changed_system(edited, assumed, settings)), path)
-
-
-def _copied(model: Model) -> Model:
-    from tempfile import TemporaryDirectory
-
-    from amalthea_uros.xmi.load import load
-    from amalthea_uros.xmi.save import save
-
-    with TemporaryDirectory() as folder:
-        copy = Path(folder, "model.amxmi")
-        save(model, copy)
-        return load(copy)
 
 
 def _refuse_migrated(model: Model) -> None:

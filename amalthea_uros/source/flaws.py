@@ -12,7 +12,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind
-from amalthea_uros.source.loops import ROUND_TRIPS, SENDS, is_only_at_creation, is_repeated, session_users
+from amalthea_uros.source.loops import ROUND_TRIPS, SENDS, Creations, is_only_at_creation, is_repeated, session_users
 from amalthea_uros.source.scope import literal
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
 from amalthea_uros.source.syntax import descendants, text_of
@@ -246,15 +246,16 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
 
 def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     described = _in_loops(facts)
-    users = [call for call in walk.calls if call.name in (*SPINS, *SENDS) and is_repeated(call)]
+    creations = Creations(walk.calls)
+    users = [(call, creations.of(call)) for call in walk.calls if call.name in (*SPINS, *SENDS) and is_repeated(call)]
     for call in walk.calls:
         if call.name not in ROUND_TRIPS or not is_repeated(call) or call.place in described:
             continue
         # Of another state than the one that the description has, or from before its loop.
-        own = [each for each in users if each.root is call.root]
-        inside = [each for each in own if call.loops[: len(each.loops)] == each.loops]
+        own = [(each, created) for each, created in users if each.root is call.root]
+        inside = [(each, created) for each, created in own if call.loops[: len(each.loops)] == each.loops]
         if not own or (
-            inside and not any(call.excludes(each) or is_only_at_creation(call, each, walk.calls) for each in inside)
+            inside and not any(call.excludes(each) or is_only_at_creation(call, each, created) for each, created in inside)
         ):
             message = f"'{call.name}' in a loop waits for the agent, which the description does not have"
             yield Finding(

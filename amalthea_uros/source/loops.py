@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from amalthea_uros.source.entities import CREATIONS
@@ -28,21 +28,22 @@ _USES = frozenset({*SPIN_KINDS, *SENDS, "rclc_action_publish_feedback", "rclc_ac
 
 def add_spins(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
     """Add to each executor how it spins, with everything else that is in the same loop."""
+    creations = Creations(calls)
     for call in calls:
         if call.name in SPIN_KINDS and (executor := executor_of(facts, call)) is not None:
             if any(spin.place == call.place for spin in executor.spins):
                 continue
-            executor.spins.append(_spin(facts, call, calls))
+            executor.spins.append(_spin(facts, call, calls, creations))
 
 
-def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall]) -> Spin:
+def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall], creations: Creations) -> Spin:
     kind, is_loop = SPIN_KINDS[call.name], is_repeated(call)
     return Spin(
         kind=kind,
         time=_timeout(call),
         place=call.place,
         # A sleep before an endless loop, or in setup(), is not part of the iteration.
-        items=tuple(_items(facts, call, calls)) if kind is SpinKind.SOME and is_loop else (),
+        items=tuple(_items(facts, call, calls, creations)) if kind is SpinKind.SOME and is_loop else (),
         is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or is_loop,
     )
 
@@ -50,13 +51,14 @@ def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall]) -
 def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
     """Add the loops that send outside of callbacks, and in which no executor spins."""
     published = {place for places in facts.publishes.values() for place in places.values()}
+    creations = Creations(calls)
     known = published | {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
     for call in calls:
         sender = call.argument(0)
         is_sending = call.name in SENDS and sender is not None
         if not is_sending or not is_repeated(call) or call.root is None or call.place in known:
             continue
-        items = tuple(_items(facts, replace(call, loops=_loop_of_thread(call, calls)), calls))
+        items = tuple(_items(facts, replace(call, loops=_loop_of_thread(call, creations)), calls, creations))
         known |= {item.place for item in items}
         if _add_to_spins(facts, items):
             continue
@@ -73,32 +75,37 @@ def _add_to_spins(facts: CodeFacts, items: tuple[CodeLoopItem, ...]) -> bool:
     return bool(spinning)
 
 
-def _loop_of_thread(call: FunctionCall, calls: Sequence[FunctionCall]) -> tuple[Mark, ...]:
+def _loop_of_thread(call: FunctionCall, creations: Creations) -> tuple[Mark, ...]:
     """The loops around the iteration of the thread that sends: up to the outermost one that does not create what it sends with."""
-    created = next((each.loops for each in _creations(call, calls)), ())
+    created = next((each.loops for each in creations.of(call)), ())
     common = sum(first == second for first, second in zip(created, call.loops, strict=False))
     is_iteration = call.root is not None and call.root.name == "loop" and not common
     return call.loops[: common + (not is_iteration)]
 
 
-def _creations(call: FunctionCall, calls: Sequence[FunctionCall]) -> Iterator[FunctionCall]:
-    """The calls of the same thread that create what a call spins or sends with."""
-    used = call.argument(0)
-    for each in calls:
-        given = each.argument(0)
-        if (
-            each.root is call.root
-            and each.name in _CREATING
-            and given is not None
-            and used is not None
-            and given.key == used.key
-        ):
-            yield each
+class Creations:
+    """The calls that create what others spin or send with, by thread and object."""
+
+    def __init__(self, calls: Iterable[FunctionCall]) -> None:
+        self._calls: dict[tuple[int, str], list[FunctionCall]] = {}
+        for call in calls:
+            if call.name in _CREATING and (given := call.argument(0)) is not None:
+                self._calls.setdefault((id(call.root), given.key), []).append(call)
+
+    def of(self, user: FunctionCall) -> Sequence[FunctionCall]:
+        """Those of the same thread that create what a call spins or sends with."""
+        used = user.argument(0)
+        return self._calls.get((id(user.root), used.key), ()) if used is not None else ()
 
 
-def is_only_at_creation(call: FunctionCall, user: FunctionCall, calls: Sequence[FunctionCall]) -> bool:
-    """Whether a call is made only together with the creation of what another one spins or sends with, not in each iteration."""
-    return any(each.always_with(call) and not each.always_with(user) for each in _creations(user, calls))
+def is_only_at_creation(call: FunctionCall, user: FunctionCall, created: Iterable[FunctionCall]) -> bool:
+    """Whether a call is made only together with the creation of what another one spins or sends with, not in each iteration.
+
+    Parameters
+    ----------
+    created : the creations of the other one
+    """
+    return any(each.always_with(call) and not each.always_with(user) for each in created)
 
 
 def session_users(facts: CodeFacts, walk: CodeWalk) -> dict[str, list[FunctionCall]]:
@@ -132,14 +139,13 @@ def _timeout(call: FunctionCall) -> Time | None:
     return Time(number * NANOSECOND) if number is not None and number >= 0 else None
 
 
-def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall]) -> Iterator[CodeLoopItem]:
+def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall], creations: Creations) -> Iterator[CodeLoopItem]:
     """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
+    created = creations.of(spin)
     for call in calls:
-        if is_only_at_creation(call, spin, calls):
-            continue
         if call.root is not spin.root or call.loops[: len(spin.loops)] != spin.loops or call.excludes(spin):
             continue
-        if is_lock(call, calls):
+        if is_only_at_creation(call, spin, created) or is_lock(call, calls):
             continue
         item = _item(facts, call)
         if item is None:

@@ -95,14 +95,19 @@ class CodeProgram:
     findings: list[Finding] = field(default_factory=list)
     changed: set[str] = field(default_factory=set)
 
-    def number_of_objects(self, owner: str, depth: int = 0) -> int:
+    def number_of_objects(self, owner: str) -> int:
         """How many objects of a class there are, as members, too; 0 if nothing shows one."""
-        if depth > _MAX_DEPTH:
-            return 0
-        return sum(
-            max(1, self.number_of_objects(around, depth + 1)) if around else 1
+        return self._number_of_objects(owner, {}, 0)
+
+    def _number_of_objects(self, owner: str, known: dict[str, int], depth: int) -> int:
+        if owner in known or depth > _MAX_DEPTH:
+            return known.get(owner, 0)
+        known[owner] = 0  # of a class in itself, which only looks so where a brace is missing
+        known[owner] = sum(
+            max(1, self._number_of_objects(around, known, depth + 1)) if around else 1
             for around in self.objects.get(owner, {}).values()
         )
+        return known[owner]
 
     def every_function(self) -> Iterator[CodeFunction]:
         """All functions."""

@@ -77,3 +77,33 @@ def test_two_processes_with_one_output_leave_the_whole_content_of_one(tmp_path):
     assert [code for _, code in ends] == [0, 0], ends
     assert shared.read_bytes() == alone.read_bytes()
     assert sorted(each.name for each in tmp_path.iterdir()) == ["alone.amxmi", "shared.amxmi"]
+
+
+READ_ONLY = """
+import os, sys
+def refuse(event, arguments):
+    is_writing = event == "open" and arguments[2] & (os.O_WRONLY | os.O_RDWR) and not str(arguments[0]).startswith("/dev/")
+    if is_writing or event in ("os.mkdir", "tempfile.mkstemp", "tempfile.mkdtemp"):
+        raise OSError(30, "Read-only file system", arguments[0])
+sys.addaudithook(refuse)
+from amalthea_uros.cli.main import main
+for words in {commands}:
+    sys.argv = ["amuros", *words]
+    try:
+        main()
+    except SystemExit as ending:
+        assert not ending.code, (words, ending.code)
+"""
+
+
+def test_commands_without_an_output_write_no_file_not_even_a_temporary_one():
+    model, change = str(YAML.with_suffix(".amxmi")), "Control_Function.period=2ms"
+    sweep = ["sweep", model, "--sweep", "Control_Function.period=1ms,2ms", "--jobs", "1"]
+    commands = [["check", model], ["analyze", model, "--set", change], sweep, ["simulate", model, "--duration", "10ms"]]
+    code = READ_ONLY.format(commands=commands)
+    environment = PATHS | {"PYTHONDONTWRITEBYTECODE": "1"}
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, env=environment, timeout=120
+    )
+    assert run.returncode == 0, run.stderr
+    assert "Observed over 10 ms" in run.stdout

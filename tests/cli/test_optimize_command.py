@@ -2,12 +2,15 @@
 
 import json
 import re
+import sys
 
 import pytest
 from command import amuros
 from support import ROOT
 
 from amalthea_uros import diff
+from amalthea_uros.cli.main import main
+from amalthea_uros.cli.patience import Progress
 
 SAMPLE = ROOT / "samples" / "bodas-test-advanced.yaml"
 LIMIT = ("--limit", "factor-to-output.max_reduced_reaction_time<11ms")
@@ -106,3 +109,53 @@ def test_a_proposal_that_does_not_exist_is_not_written(tmp_path):
     assert run.returncode == 2
     assert "there is no proposal 7" in run.stderr
     assert not target.exists()
+
+
+@pytest.fixture
+def interrupted(monkeypatch, capsys):
+    """Calls the command in this process, and interrupts it after some designs; gives the exit code, and what it wrote."""
+
+    def call(designs, *arguments):
+        def reach(_progress, done):
+            if done == designs:
+                raise KeyboardInterrupt
+
+        monkeypatch.setattr(Progress, "reach", reach)
+        monkeypatch.setattr(sys, "argv", ["amuros", "optimize", *map(str, arguments), "--jobs", "1"])
+        with pytest.raises(SystemExit) as ending:
+            main()
+        return ending.value.code, *capsys.readouterr()
+
+    return call
+
+
+def test_an_interrupted_search_replaces_no_file_of_a_finished_one(interrupted, tmp_path):
+    json_file, svg, yaml = files = [tmp_path / name for name in ("r.json", "front.svg", "better.yaml")]
+    for path in files:
+        path.write_text("of a finished search")
+    periods = ("--vary", "periods", "--goal", "latency")
+    to_files = ("--output", f"json={json_file}", "--output", "text", "--pareto", svg, "-o", yaml)
+    code, output, errors = interrupted(3, SAMPLE, *periods, *to_files)
+    assert (code, [path.read_text() for path in files]) == (130, 3 * ["of a finished search"])
+    partial = {path: path.with_suffix(f".partial{path.suffix}") for path in files}
+    assert json.loads(partial[json_file].read_text())["ended"] == "interrupted"
+    assert "<svg" in partial[svg].read_text()
+    assert "amuros: 1" in partial[yaml].read_text().splitlines()
+    assert f"the result is not complete; it is in '{partial[json_file]}'" in errors
+    assert "interrupted" in output
+
+
+def test_an_interrupted_search_does_not_replace_what_it_reads(interrupted, tmp_path):
+    model = tmp_path / "better.partial.yaml"
+    model.write_text(SAMPLE.read_text())
+    code, _, errors = interrupted(3, model, "--vary", "periods", "--goal", "latency", "-o", tmp_path / "better.yaml")
+    assert code == 2
+    assert "would replace a file that is read" in errors
+    assert model.read_text() == SAMPLE.read_text()
+
+
+def test_a_search_that_is_interrupted_before_it_finds_anything_writes_no_proposal(interrupted, tmp_path):
+    code, _, errors = interrupted(1, SAMPLE, *LIMIT, "-o", tmp_path / "better.yaml")
+    assert code == 130
+    assert "Error" not in errors
+    assert list(tmp_path.iterdir()) == []

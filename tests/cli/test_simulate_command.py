@@ -202,9 +202,12 @@ def test_a_run_that_fails_has_its_error_in_the_table(run, tmp_path):
 
 def test_ctrl_c_keeps_the_runs_that_are_finished(run, tmp_path):
     (tmp_path / "t.json").write_text("a full table")
-    code, output, errors = run(ADVANCED, "--seed", 10, "--runs", 9, "--jobs", 1, "--table", tmp_path / "t.json")
+    (tmp_path / "r.json").write_text("a full result")
+    files = ("--table", tmp_path / "t.json", "--output", f"json={tmp_path / 'r.json'}", "--output", "text")
+    code, output, errors = run(ADVANCED, "--seed", 10, "--runs", 9, "--jobs", 1, *files)
     assert code == 130
-    assert (tmp_path / "t.json").read_text() == "a full table"
+    assert [(tmp_path / f"{name}.json").read_text() for name in "tr"] == ["a full table", "a full result"]
+    assert len(json.loads((tmp_path / "r.partial.json").read_text())["runs"]) == 3
     assert [row["seed"] for row in json.loads((tmp_path / "t.partial.json").read_text())] == [10, 11, 12]
     assert f"the table is not complete; it is in '{tmp_path / 't.partial.json'}'" in errors
     assert "interrupted: 3 of 9 runs finished" in errors

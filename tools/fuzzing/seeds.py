@@ -35,6 +35,21 @@ BA_ "GenMsgCycleTime" BO_ 1 10;
 _MARKERS = b"A: {value: Debug.Time, unit: us}\nB: {value: Other.Value, unit: ms}\nC: {start: 0x1, end: 0x2, counter: byte 0}\n"
 _TABLE = b"start_us,end_us,valid,name\n" + b"".join(b"%d.5,%d,1,x\n" % (10 * i, 10 * i + 3) for i in range(20))
 _SOURCE = (_SAMPLES / "sources" / "int32_publisher.c").read_bytes()
+_OWN_FILES = b"""amuros: 1
+name: app
+hardware: {platform: ./board.yaml}
+os: {rtos: ./rtos.yaml}
+middleware:
+  profile: ./middleware.yaml
+  executor: {name: executor, loop: {spin_some: 10 ms}, priority: 5, execution_time: {base: 100 us, per_handle: 5 us}}
+  transport: {serial: {baud_rate: 115200}}
+  agent: {profile: ./times.yaml}
+application:
+  nodes:
+    - name: node
+      publishers: [{topic: a, message_size: 56 B}]
+      timers: [{name: Tick, period: 10 ms, execution_time: 1 ms, publishes: [a]}]
+"""
 _BUILD_FILES = {
     "platformio.ini": b"[env:robot]\nboard = pico\nframework = arduino\nboard_build.f_cpu = 80000000L\n",
     "prj.conf": b"CONFIG_MICROROS=y\nCONFIG_MAIN_STACK_SIZE=2048\n",
@@ -42,6 +57,7 @@ _BUILD_FILES = {
     "CMakeLists.txt": b"pico_sdk_init()\npico_enable_stdio_usb(app 1)\n",
     "app.meta": (ROOT / "tests" / "hostile" / "comments-and-commas.meta").read_bytes(),
     "my_msgs/msg/Own.msg": b"float64[<=6] positions\nstring<=20 name\nint32 X=5\nmy_msgs/Part[3] parts\n",
+    "my_msgs/srv/Add.srv": b"int64 a\nint64[<=4] b  # comment\n---\nmy_msgs/Own sum\nwstring<=9 why\n",
     "my_msgs/action/Count.action": b"int32 goal\n---\nint32[] result\n---\nstring<=8 feedback\n",
     "my_msgs/msg/Wheels.idl": b"module my_msgs { module msg { typedef double d3[3]; struct W { d3 a; sequence<long, 4> t; }; }; };",
 }
@@ -65,6 +81,25 @@ def _baselines() -> Sequence[Files]:
 def _descriptions() -> Sequence[Files]:
     found = _files(_SAMPLES, "*.yaml", count=80)
     return [files for files in found if not any(word in files["case.yaml"] for word in (b"TODO", b" dbc:"))]
+
+
+def _own_files() -> Sequence[Files]:
+    """Descriptions with files of their own for all that has a name: board, operating system, middleware and measured times."""
+    platforms = ROOT / "amalthea_uros" / "platforms"
+    middleware = b"amuros: 1\nprofile: mine\nbase: xrce-dds\nsending: {heartbeat: 150 ms}\n"
+    middleware += b"sizes: {message_header: 8 B}\noptions: {MTU: 256}\n"
+    found = []
+    for board, rtos, times in (("esp32", "freertos", "ra6m5-uart"), ("nucleo-f767zi", "zephyr", "pico2w-usb")):
+        found.append(
+            {
+                "app.yaml": _OWN_FILES,
+                "board.yaml": (platforms / f"{board}.yaml").read_bytes(),
+                "rtos.yaml": (platforms / "rtos" / f"{rtos}.yaml").read_bytes(),
+                "times.yaml": (platforms / "measured" / f"{times}.yaml").read_bytes(),
+                "middleware.yaml": middleware,
+            }
+        )
+    return found
 
 
 def _projects() -> Sequence[Files]:
@@ -127,6 +162,7 @@ _SEEDS: Mapping[str, Callable[[], Sequence[Files]]] = {
     "description-checked": _descriptions,
     "iprx": _projects,
     "meta": lambda: _files(ROOT / "tests" / "hostile", "*.meta"),
+    "own-files": _own_files,
     "older-amxmi": lambda: _files(_CORPUS, "*.amxmi"),
     "recording": _recordings,
     "sources": _sources,

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from amalthea_uros._internal.csv_cells import safe_cell
-from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_file, is_stream, write_bytes
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_file, result_path, write_bytes
 from amalthea_uros.design.campaign.run import Record, Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.xmi.emf.files import not_writable
@@ -55,7 +55,7 @@ def write_table(path: Path, rows: Sequence[Record], *, is_complete: bool = True)
     """
     if not rows and (is_file(path) or not is_complete):
         return None
-    target = path if is_complete or is_stream(path) else path.with_suffix(f".partial{path.suffix}")
+    target = result_path(path, is_complete=is_complete)
     columns = list(dict.fromkeys(name for row in rows for name in row))
     try:
         write_bytes(target, table_format(path)(columns, rows))

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property, lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from amalthea_uros._internal.files import overlaid
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.model_attributes.keys import ModelKey, keys_of, the_key
@@ -51,6 +51,18 @@ class ModelTexts:
         except WriteError as error:
             reason = next((finding.message for finding in error.findings), str(error))
             raise InvalidArgumentError(f"attributes of the model cannot be changed: {reason}") from None
+
+    def read(self) -> Model:
+        """A new model from the texts, with the paths of the former one."""
+        from amalthea_uros.xmi.load import load
+
+        # Under a device there is no file that could be read instead.
+        contents = {Path("/dev/null", f"{number}.amxmi"): text.encode() for number, text in enumerate(self.texts)}
+        with overlaid(contents):
+            model = load(*contents, max_size=8 * max(map(len, contents.values())))
+        for document, own in zip(model.documents, self.paths, strict=True):
+            document.path = own
+        return model
 
 
 class EditableModel:
@@ -144,13 +156,4 @@ class ModelSource:
 @lru_cache(maxsize=2)
 def _copied(texts: ModelTexts) -> EditableModel:
     """A copy of a model; searches and campaigns ask for the same one again."""
-    from amalthea_uros.xmi.load import load
-
-    with TemporaryDirectory() as folder:
-        paths = [Path(folder, f"{number}.amxmi") for number in range(len(texts.texts))]
-        for path, text in zip(paths, texts.texts, strict=True):
-            path.write_text(text, encoding="utf-8", newline="")
-        model = load(*paths, max_size=max(len(text) for text in texts.texts) * 8)
-    for document, own in zip(model.documents, texts.paths, strict=True):
-        document.path = own
-    return EditableModel(model)
+    return EditableModel(texts.read())

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
 
+from amalthea_uros._internal.compiled import machine_code
 from amalthea_uros._internal.machine_code import LOADING, CompilationEffort
 from amalthea_uros.simulate.kernel import (
     activation,
@@ -102,11 +103,7 @@ def compiled() -> CompiledKernel:
     kernel = FunctionType(loop.run_kernel.__code__, namespaces[loop], "run_kernel")
     # numba looks at the file of this function only, to see whether its machine code is out of date.
     kernel.__qualname__ = _name()
-    signature = "int64(int64[::1])"
-    try:
-        return _as_kernel(njit(signature, cache=True, nogil=True)(kernel))
-    except RuntimeError:  # there is no folder in which numba could keep the machine code
-        return _as_kernel(njit(signature, nogil=True)(kernel))
+    return machine_code(kernel, "int64(int64[::1])")
 
 
 def _functions(module: ModuleType) -> list[FunctionType]:
@@ -124,7 +121,3 @@ def _name() -> str:
     """A name that changes with every change of the kernel."""
     sources = "".join(getsource(module) for module in (*_MODULES, layout, sys.modules[__name__]))
     return f"{_PREFIX}{blake2b(sources.encode(), digest_size=8).hexdigest()}"
-
-
-def _as_kernel(function: CompiledKernel) -> CompiledKernel:
-    return function
