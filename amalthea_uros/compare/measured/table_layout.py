@@ -72,10 +72,10 @@ class HeaderColumns:
     @cached_property
     def _places(self) -> Mapping[str, Sequence[int]]:
         """The places of each name: more than one for equal names."""
-        found: dict[str, list[int]] = {}
+        places: dict[str, list[int]] = {}
         for place, name in enumerate(self.header.fields):
-            found.setdefault(name, []).append(place)
-        return found
+            places.setdefault(name, []).append(place)
+        return places
 
     def of(self, columns: Sequence[TableColumn], valid: ValidRows | None, unit: Time | None) -> TableLayout:
         """The layout of the table.

@@ -202,7 +202,7 @@ class SchedulingOrder:
         members = [
             each for each in here if each.scheduler != scheduler.name or _of(scheduler, each.parameters, _GROUP) == group
         ]
-        known = [found for each in members if (found := effective_priority(each, self.system)) is not None]
+        known = [level for each in members if (level := effective_priority(each, self.system)) is not None]
         return StatedPlace(priority, max(known)) if len(known) == len(members) else None
 
     def _incomplete(self) -> frozenset[str]:

@@ -54,7 +54,7 @@ def add_looping_executor(
         executor = replace(executor, busy_wait=busy)
     if polls_before_timers(executor):
         executor = replace(executor, poll=_poll(context, executor, core))
-    # An iteration of each executor before it in the loop lies between two of its own.
+    # Each executor before it in the loop has an iteration between two of its own.
     spins = [each.spin for each in others_of_thread(executor, context.executors)]
     least = sum(_least_time(context.runnables[each], core, context) for each in (executor.spin, *spins))
     exclusive = has_one_message_per_iteration(executor, is_alone)

@@ -48,7 +48,7 @@ class _OpenElement(NamedTuple):
 
 
 def check_read_back(
-    pieces: Sequence[str],
+    parts: Sequence[str],
     copied: Mapping[int, Element],
     document: Document,
     serializer: EmfSerializer,
@@ -58,17 +58,17 @@ def check_read_back(
 
     Parameters
     ----------
-    pieces : of the text
-    copied : the untouched objects whose text is copied with everything in it, by the numbers of the pieces
+    parts : of the text
+    copied : the untouched objects whose text is copied with everything in it, by their numbers
 
     Raises
     ------
     WriteError : reading the text would not give the same model.
     """
     comparison = _ReadBackComparison(document, serializer, merger, copied)
-    if problems.lacks_namespace("".join(pieces)):
+    if problems.lacks_namespace("".join(parts)):
         comparison.refuse(document.root, "the prefix 'xsi' would not be declared")
-    text = "".join([comparison.mark(number, piece) if number in copied else piece for number, piece in enumerate(pieces)])
+    text = "".join([comparison.mark(number, part) if number in copied else part for number, part in enumerate(parts)])
     parser = comparison.parser
     parser.StartElementHandler, parser.EndElementHandler = comparison.start, comparison.end
     try:
@@ -94,7 +94,7 @@ class _ReadBackComparison:
         self.skipped_depth = 0
 
     def mark(self, number: int, piece: str) -> str:
-        """What is read instead of a copied object."""
+        """The object that is read instead of a copied one."""
         name, last = _NAME.match(piece), piece.rfind("<")
         is_empty = last == 0 and piece.endswith("/>")
         if name is None or not (is_empty or re.fullmatch(rf"</{re.escape(name[1])}\s*>", piece[last:])):
