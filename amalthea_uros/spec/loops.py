@@ -43,6 +43,8 @@ class LoopItem(DescriptionSection):
             raise problem(f"expected one of {', '.join(map(repr, keys))}, found {' and '.join(map(repr, stated)) or 'none'}")
         if self.executor is not None and self.spin_some is None:
             raise problem("'executor' has no effect without 'spin_some'")
+        if self.publish is not None and len(set(self.publish)) < len(self.publish):
+            raise problem("a topic occurs twice in 'publish': use an item for each message")
         if self.attempts is not None and self.ping is None:
             raise problem("'attempts' has no effect without 'ping'")
         if self.every is not None and not self.uses_agent:

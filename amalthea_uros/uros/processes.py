@@ -15,6 +15,7 @@ from amalthea_uros.uros.callback_tasks import add_callbacks
 from amalthea_uros.uros.executors.activation import is_triggered, iteration_trigger_name
 from amalthea_uros.uros.executors.loop_items import loop_callbacks
 from amalthea_uros.uros.executors.sleeps import check_sleeps
+from amalthea_uros.uros.executors.threads import names_of_loops
 from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.middleware.checks import check_middleware
 from amalthea_uros.uros.middleware.options import Option, check_options
@@ -38,6 +39,7 @@ def _names(description: Description) -> Iterator[tuple[str, Location | None]]:
     if nodes:
         for executor in description.middleware.stated_executors:
             yield executor.name, executor.location("name")
+        yield from names_of_loops(description.middleware)
         if (interrupt := receive_interrupt(description.middleware.transport)) is not None:
             yield interrupt.name, interrupt.location("name")
     for process in (*description.tasks, *description.isrs):

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body
 
 #: An assumption.
+_ONE_ATTEMPT = "a ping of several attempts is sent once, and its reply awaited for the time of all of them"
 _OVERHEAD = "the overhead of an iteration of an executor is executed after its wait"
 
 
@@ -326,6 +327,8 @@ class IterationCompiler:
         code, record = self.body.code, self.records.publication(self.executor.name, handle, publication)
         self._lock()
         code.add(layout.WRITE, self.records.messages.transmissions[transmission], record)
+        if publication.attempts > 1:
+            self.records.resources.context.notes.assume(_ONE_ATTEMPT)
         if publication.waits:
             code.add(layout.EXPECT, self.record, record)
             self._read()

@@ -21,13 +21,16 @@ from amalthea_uros.uros.middleware.profile import Profile
 def loop_callbacks(description: Description, profile: Profile, findings: Notes) -> Iterator[Callback]:
     """A callback for each item of a loop that sends, with a finding for each topic without a publisher."""
     nodes = description.application.nodes
-    if not nodes:
-        return
     for thread in threads_with_items(description.middleware):
+        sent = [each for part in thread.parts for each in part.sent]
+        if sent and not nodes:
+            text = f"the loop of {thread.owner!r} sends, but the application has no node"
+            findings.error("APP003", text, sent[0].item.location(), "Define the node under 'application', with its publishers.")
+            continue
         of_thread = _ThreadCallbacks(thread, thread.pace(description.os), nodes, profile, findings)
         for part in thread.parts:
             for item in part.sent:
-                yield of_thread.callback(item, part.name)
+                yield of_thread.callback(*item, part.name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +48,9 @@ class _ThreadCallbacks:
     profile: Profile
     findings: Notes
 
-    def callback(self, item: LoopItem, executor: str) -> Callback:
+    def callback(self, name: str, item: LoopItem, executor: str) -> Callback:
         """The callback of an item."""
-        name, interval = self._name(item), item.every if item.every is not None else self.pace
+        interval = item.every if item.every is not None else self.pace
         at_once = ExecutionTimeSection.model_construct(min=0, max=0)
         section = CallbackSection.model_construct(name=name, execution_time=at_once, publishes=item.publish or [])
         section._where = item._where
@@ -66,12 +69,6 @@ class _ThreadCallbacks:
             outgoing=tuple(self._messages(item, name, interval)),
             buffer=None,
         )
-
-    def _name(self, item: LoopItem) -> str:
-        names = [f"{self.thread.owner}_{_what(each)}" for each in self.thread.items if each.uses_agent]
-        place = [each for each in self.thread.items if each.uses_agent].index(item)
-        before = names[:place].count(names[place])
-        return names[place] if not before else f"{names[place]}_{before + 1}"
 
     def _node(self, item: LoopItem) -> NodeSection:
         """The node of the publisher."""
@@ -102,9 +99,3 @@ class _ThreadCallbacks:
             attempts=attempts,
             timeout=(longest or 0) + attempts * self.profile.replies_late,
         )
-
-
-def _what(item: LoopItem) -> str:
-    if item.publish is not None:
-        return f"publishes_{item.publish[0]}"
-    return "ping" if item.ping is not None else "sync"

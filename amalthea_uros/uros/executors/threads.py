@@ -8,9 +8,12 @@ the last one.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from amalthea_uros._internal.records import dataclass, replace
+from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import LoopKind, ThreadLoop, ThreadPlace
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
@@ -21,6 +24,13 @@ from amalthea_uros.spec.os import OsSection
 from amalthea_uros.units import MILLISECOND, Time
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.executors.sleeps import slept
+
+
+class SentItem(NamedTuple):
+    """What a loop sends outside of callbacks, with the name of the callback that stands for it."""
+
+    name: str
+    item: LoopItem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +47,7 @@ class LoopPart:
 
     name: str
     timeout: Time = 0
-    sent: tuple[LoopItem, ...] = ()
+    sent: tuple[SentItem, ...] = ()
     after: tuple[LoopItem, ...] = ()
 
 
@@ -60,18 +70,26 @@ class ThreadItems:
         spins = any(begins)
         first = (begins if spins else [item.uses_agent for item in self.items]).index(True)
         parts: list[LoopPart] = []
+        names: Counter[str] = Counter()
         for item in (*self.items[first:], *self.items[:first]):
             if item.spin_some is not None:
                 parts.append(LoopPart(name=item.executor or self.owner, timeout=item.spin_some))
             elif not item.uses_agent:
                 parts[-1] = replace(parts[-1], after=(*parts[-1].after, item))
-            elif parts and parts[-1].sent and not parts[-1].after:
-                parts[-1] = replace(parts[-1], sent=(*parts[-1].sent, item))
             else:
-                number = sum(bool(each.sent) for each in parts) + spins
-                name = self.owner if not number else f"{self.owner}_sends" if number == 1 else f"{self.owner}_sends_{number}"
-                parts.append(LoopPart(name=name, sent=(item,)))
+                own = f"{self.owner}_{_what(item)}"
+                names[own] += 1
+                sent = SentItem(own if names[own] == 1 else f"{own}_{names[own]}", item)
+                if parts and parts[-1].sent and not parts[-1].after:
+                    parts[-1] = replace(parts[-1], sent=(*parts[-1].sent, sent))
+                else:
+                    number = sum(bool(each.sent) for each in parts) + spins
+                    parts.append(LoopPart(name=self._name_of_sender(number), sent=(sent,)))
         return tuple(parts)
+
+    def _name_of_sender(self, number: int) -> str:
+        """The name of what sends, of several in the loop; where nothing spins, the first one has that of the section."""
+        return self.owner if not number else f"{self.owner}_sends" if number == 1 else f"{self.owner}_sends_{number}"
 
     @property
     def executors(self) -> tuple[str, ...]:
@@ -132,6 +150,15 @@ def executors_of_loops(middleware: Middleware) -> dict[str, ExecutorSection]:
     return sections
 
 
+def names_of_loops(middleware: Middleware) -> Iterator[tuple[str, Location | None]]:
+    """The names that what loops send gets, of executors and of callbacks, each with the place of the item."""
+    for thread in threads_with_items(middleware):
+        for part in thread.parts:
+            if part.sent and part.name != thread.owner:
+                yield part.name, part.sent[0].item.location()
+            yield from ((each.name, each.item.location()) for each in part.sent)
+
+
 def _sending(owner: ExecutorSection, name: str) -> ExecutorSection:
     """The executor that stands for messages which the thread of a section sends outside of callbacks; it costs nothing itself."""
     at_once = ExecutionTimeSection.model_construct(min=0, max=0)
@@ -145,6 +172,12 @@ def _sending(owner: ExecutorSection, name: str) -> ExecutorSection:
         "max_handles": None,
     }
     return owner.model_copy(update=kept)
+
+
+def _what(item: LoopItem) -> str:
+    if item.publish is not None:
+        return f"publishes_{item.publish[0]}"
+    return "ping" if item.ping is not None else "sync"
 
 
 def _latest(wait: Time, os: OsSection) -> Time:
