@@ -171,8 +171,16 @@ class System:
         own = self.executor_of_task.get(task)
         if own is None or own.place is None:
             return frozenset((task,))
-        thread = own.place.thread
-        return frozenset(each.task for each in self.executors if each.place is not None and each.place.thread == thread)
+        return self._tasks_of_threads[own.place.thread]
+
+    @cached_property
+    def _tasks_of_threads(self) -> Mapping[str, frozenset[str]]:
+        """The tasks of the executors that share a thread, by thread."""
+        tasks: dict[str, set[str]] = {}
+        for each in self.executors:
+            if each.place is not None:
+                tasks.setdefault(each.place.thread, set()).add(each.task)
+        return {thread: frozenset(names) for thread, names in tasks.items()}
 
     @cached_property
     def callback_of_host_event(self) -> Mapping[str, HostCallback]:

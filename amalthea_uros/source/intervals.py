@@ -22,7 +22,7 @@ _JUMPS = ("return_statement", "break_statement", "continue_statement", "goto_sta
 
 
 def interval_of(condition: Node, body: Node, number: Callable[[Node], int | None]) -> Time:
-    """The least time between two executions of a branch, 0 if its condition keeps them not apart.
+    """The least time between two executions of a branch, 0 if its condition does not keep them apart.
 
     The clock of the last execution has to be noted in each: `if (millis() - last > 100) { last = millis(); ... }`.
 

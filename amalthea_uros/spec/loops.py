@@ -78,7 +78,7 @@ class LoopSection(Shorthand):
     """Timeout of `rclc_executor_spin`, an endless `spin_some`; that of rclc is `1 s`."""
     timeout: Duration | None = None
     """Timeout of the executor, with `spin_period`; default: that of the middleware, 1 s for rclc."""
-    items: Annotated[list[LoopItem], Limits(min_length=1)] | None = None
+    items: Annotated[list[LoopItem], Limits(min_length=1, max_length=100)] | None = None
     """What the thread does again and again, in this order: `rclc_executor_spin_some` of this executor once, and more."""
 
     @examines

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros.perf.activities import Call
 from amalthea_uros.perf.executors import HandleKind
@@ -10,7 +10,6 @@ from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter, InterProcess
 from amalthea_uros.spec.executors import ExecutorSection
-from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, body_name, registration_order
 from amalthea_uros.uros.application.phases import ExecutorPhases, own_task_counter
@@ -27,10 +26,11 @@ from amalthea_uros.uros.assembly.planned import PlannedTask, activity_sequence, 
 from amalthea_uros.uros.executors.add import add_looping_executor
 from amalthea_uros.uros.executors.checks import check_order, check_threads
 from amalthea_uros.uros.executors.threads import (
+    ThreadItems,
     check_threads_of_loops,
     executors_of_loops,
     in_thread_order,
-    thread_items,
+    threads_by_executor,
     threads_of,
 )
 from amalthea_uros.uros.periods import (
@@ -49,9 +49,12 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
     middleware = context.description.middleware
     executors = middleware.stated_executors
     check_threads_of_loops(middleware, context.notes)
-    by_name = executors_of_loops(middleware)
-    for executor in map(by_name.__getitem__, in_thread_order(tuple(by_name), middleware)):
-        own = [callback for callback in callbacks if callback.executor == executor.name]
+    by_name, threads = executors_of_loops(middleware), threads_by_executor(middleware)
+    served: dict[str, list[Callback]] = {}
+    for callback in callbacks:
+        served.setdefault(callback.executor, []).append(callback)
+    for executor in map(by_name.__getitem__, in_thread_order(by_name, threads)):
+        own, thread = served.get(executor.name, []), threads.get(executor.name)
         inside = [callback for callback in own if callback.in_executor]
         ordered = registration_order(inside if executor.loop is None else own, executor, context.notes)
         check_order(executor, context.notes)
@@ -59,10 +62,10 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
             advice = f"Set 'runs_in: {executor.name}' at callbacks or nodes, or remove the executor."
             context.notes.error("APP003", f"the executor {executor.name!r} serves no callback", executor.location(), advice)
         elif executor.loop is not None:
-            choices += _add_looping(context, executor, ordered, _of_thread(executor, callbacks, middleware))
+            choices += _add_looping(context, executor, ordered, thread, _of_thread(thread, served) if thread else own)
         else:
             choices += _add_periodic(context, executor, own, ordered)
-    loops = threads_of([executor for executor in executors if executor.loop is not None], middleware)
+    loops = threads_of([executor for executor in executors if executor.loop is not None], threads)
     periodic = [executor.name for executor in executors if executor.loop is None]
     if loops:
         sending = [callback for callback in callbacks if not callback.in_executor and callback.outgoing]
@@ -71,21 +74,24 @@ def add_callbacks(context: AssemblyContext, callbacks: Sequence[Callback]) -> tu
     return tuple(choices)
 
 
-def _of_thread(executor: ExecutorSection, callbacks: Sequence[Callback], middleware: Middleware) -> Sequence[Callback]:
-    """The callbacks that the thread of an executor serves."""
-    items = thread_items(executor.name, middleware)
-    names = (executor.name,) if items is None else items.executors
-    return [callback for callback in callbacks if callback.executor in names]
+def _of_thread(thread: ThreadItems, served: Mapping[str, Sequence[Callback]]) -> Sequence[Callback]:
+    """The callbacks that a thread serves."""
+    return [callback for name in thread.executors for callback in served.get(name, ())]
 
 
 def _add_looping(
-    context: AssemblyContext, executor: ExecutorSection, callbacks: Sequence[Callback], of_thread: Sequence[Callback]
+    context: AssemblyContext,
+    executor: ExecutorSection,
+    callbacks: Sequence[Callback],
+    thread: ThreadItems | None,
+    of_thread: Sequence[Callback],
 ) -> Iterator[PeriodChoice]:
     """Add an executor with a loop, and the tasks of callbacks that do not run in it: it activates those without a period.
 
     Parameters
     ----------
     callbacks : that it serves
+    thread : the list that its loop is a part of; None if its section has its own loop
     of_thread : those that its thread serves
     """
     core = context.core(executor.core, executor.location("core"))
@@ -97,7 +103,7 @@ def _add_looping(
         and not any(each.outgoing for each in outside)
         and not any(map(_reads_itself, of_thread))
     )
-    add_looping_executor(context, executor, callbacks, bodies, triggered, is_alone, of_thread)
+    add_looping_executor(context, executor, callbacks, bodies, triggered, is_alone, thread, of_thread)
     for callback in outside:
         if callback.name in triggered:
             _add_triggered_task(context, callback, bodies[callback.name])

@@ -163,8 +163,7 @@ def check_shared_priorities(
     seen: set[str] = set()
     for allocation, priority, others in sharing_a_priority(system, allocated_cores(system)):
         seen.add(allocation.task)
-        # The executors of a thread have its priority.
-        before = next((other for other in others if other in seen - system.tasks_of_thread(allocation.task)), None)
+        before = next((other for other in others if other in seen), None)
         if before is not None:
             message = f"{allocation.task!r} has the same priority {scale.number(priority)} as {before!r}"
             notes.warning("UR106", message, origins.get(allocation.task), "Set different priorities.")

@@ -12,6 +12,7 @@ from amalthea_uros.bridge.extract import extract
 from amalthea_uros.errors import ReadError
 from amalthea_uros.services.analyze import analyze
 from amalthea_uros.services.build import describe
+from amalthea_uros.services.check import check
 from amalthea_uros.services.simulate import simulate
 from amalthea_uros.spec.read import read_description
 from amalthea_uros.timing.basics.quantities import ChainQuantity
@@ -62,6 +63,16 @@ TWO = text_of(
 )
 
 
+LOW = "tasks:\n  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
+
+
+def with_item(item, *more):
+    """An executor with a subscription, in whose loop its thread does something else, too, and sleeps 5 ms."""
+    return text_of(
+        ["{spin_some: 10 ms}", item, *more, "{sleep: 5 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, tasks=LOW
+    )
+
+
 def test_a_timer_waits_for_the_other_executor_of_its_loop():
     # Ready just after a check: what is left of this iteration, 20 + 100 + 210 us; the wait of 100 ms and an iteration of the other one,
     # 20 + 310 us; then the check, 20 us, and its place in the iteration. As the overhead can be on either side of a check, it counts
@@ -76,8 +87,18 @@ def test_a_timer_waits_for_the_other_executor_of_its_loop():
     assert observed.lost > 0
 
 
-def test_executors_of_one_thread_are_not_several_threads():
-    assert {finding.rule for finding in analyze(TWO).findings} & {"EXE008", "UR106", "EXE022"} == set()
+@pytest.mark.parametrize("text", [TWO, with_item("{ping: 100 ms}")])
+def test_executors_of_one_thread_are_not_several_threads(text, tmp_path):
+    assert {finding.rule for finding in analyze(text).findings} & {"EXE008", "UR106", "EXE022"} == set()
+    (tmp_path / "app.yaml").write_text(text)
+    model = build_model(describe(tmp_path / "app.yaml").system)
+    assert check(model, ["TIM-PRIORITY-SHARED"]) == []
+
+
+def test_a_loop_has_so_many_items_at_most(tmp_path):
+    (tmp_path / "app.yaml").write_text(with_item(", ".join(["{publish: [p]}", "{sleep: 1 ms}"] * 50)))
+    with pytest.raises(ReadError, match="at most 100 items"):
+        describe(tmp_path / "app.yaml")
 
 
 def test_the_order_and_the_sleeps_of_a_loop_are_kept():
@@ -109,16 +130,6 @@ def test_a_busy_wait_lets_nothing_of_lower_priority_execute():
     }
     # The busy wait of 5 ms, up to a tick of 1 ms more.
     assert waiting["busy_wait"].response.worst >= waiting["sleep"].response.worst + 5 * MS
-
-
-LOW = "tasks:\n  - {name: Low, period: 50 ms, priority: 1, execution_time: 1 ms}\n"
-
-
-def with_item(item, *more):
-    """An executor with a subscription, in whose loop its thread does something else, too, and sleeps 5 ms."""
-    return text_of(
-        ["{spin_some: 10 ms}", item, *more, "{sleep: 5 ms}"], {"subscriptions": [subscription("a", 1, 100)]}, tasks=LOW
-    )
 
 
 def calls_of(name, simulation):

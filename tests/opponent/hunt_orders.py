@@ -1,7 +1,7 @@
 """Bounds that hold for any order of priorities or deadlines, against all orders of many random systems.
 
 `python -m opponent.hunt_orders [SYSTEMS] [SEED]` with `tests` and `tests/analyze` on the path: each system of two to four tasks on one
-core is played in every order of distinct priorities, with deadlines of a grid, and with every place of those that have no priority.
+core is simulated in every order of distinct priorities, with deadlines of a grid, and with every place of those that have no priority.
 """
 
 import sys

@@ -111,6 +111,8 @@ def is_by_priority(name: str | None) -> bool:
 def sharing_a_priority(system: System, cores: Mapping[str, frozenset[str]]) -> Iterator[tuple[TaskAllocation, int, list[str]]]:
     """The allocations of tasks that share a priority where the priority decides, with the priority and the other tasks that have it.
 
+    Executors that spin in one thread have its priority, and share it with nobody.
+
     Parameters
     ----------
     cores : those on which each process may run
@@ -122,8 +124,11 @@ def sharing_a_priority(system: System, cores: Mapping[str, frozenset[str]]) -> I
             levels.setdefault(level, {})[allocation.task] = None
     for allocation in system.mapping.tasks:
         level = _level(allocation, system, cores)
-        others = [task for task in levels.get(level, ()) if task != allocation.task] if level is not None else []
-        if level is not None and others:
+        if level is None:
+            continue
+        own = system.tasks_of_thread(allocation.task)
+        others = [task for task in levels[level] if task not in own]
+        if others:
             yield allocation, level[-1], others
 
 

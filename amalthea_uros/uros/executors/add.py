@@ -23,7 +23,7 @@ from amalthea_uros.uros.executors.checks import check_executor
 from amalthea_uros.uros.executors.handles import handle_names, handles_of, trigger_of
 from amalthea_uros.uros.executors.iterations import has_one_message_per_iteration, iteration_activities, polls_before_timers
 from amalthea_uros.uros.executors.sleeps import slept
-from amalthea_uros.uros.executors.threads import thread_items
+from amalthea_uros.uros.executors.threads import ThreadItems
 
 #: Iterations are executed one after the other, however many are due.
 _UNLIMITED = 1_000_000
@@ -36,6 +36,7 @@ def add_looping_executor(
     bodies: Mapping[str, Runnable],
     activates: Mapping[str, Sequence[str]],
     is_alone: bool,
+    thread: ThreadItems | None,
     of_thread: Sequence[Callback],
 ) -> None:
     """Add an executor with a loop, and the task of its iterations.
@@ -46,11 +47,12 @@ def add_looping_executor(
     bodies : the runnable of each callback
     activates : the task that it activates for each callback that has one
     is_alone : whether nothing else uses the middleware
+    thread : the list that its loop is a part of; None if its section has its own loop
     of_thread : callbacks of all executors of its thread
     """
     core = context.core(section.core, section.location("core"))
-    executor = _executor(context, section, callbacks, bodies, activates, core)
-    if (busy := _busy_wait(context, executor, core)) is not None:
+    executor = _executor(context, section, callbacks, bodies, activates, thread, core)
+    if thread is not None and (busy := _busy_wait(context, executor, thread, core)) is not None:
         executor = replace(executor, busy_wait=busy)
     if polls_before_timers(executor):
         executor = replace(executor, poll=_poll(context, executor, core))
@@ -85,6 +87,7 @@ def _executor(
     callbacks: Sequence[Callback],
     bodies: Mapping[str, Runnable],
     activates: Mapping[str, Sequence[str]],
+    thread: ThreadItems | None,
     core: str,
 ) -> Executor:
     assert section.loop is not None
@@ -102,18 +105,17 @@ def _executor(
         own_take = take if take.activities and callback.in_executor else None
         handles += handles_of(callback, own_take, body, context.profile)
     waiting, os = context.profile.waiting, context.description.os
-    items = thread_items(section.name, middleware)
     return Executor(
         name=section.name,
         task=section.name,
         spin=spin_name(section.name),
-        loop=_loop(section.loop, waiting, os) if items is None else items.loop(section.name, os),
+        loop=_loop(section.loop, waiting, os) if thread is None else thread.loop(section.name, os),
         handles=tuple(handles),
         trigger=trigger_of(section, {callback.name: handle_names(callback) for callback in callbacks}, context.notes),
         takes_first=section.semantics == "LET",
         waiting=waiting,
         session="session" if middleware.multithread else None,
-        place=None if items is None else items.place(section.name, os),
+        place=None if thread is None else thread.place(section.name, os),
         origin=section.location(),
     )
 
@@ -140,10 +142,9 @@ def _loop(section: LoopSection, waiting: WaitBehaviour, os: OsSection) -> Thread
     return ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=section.spin)
 
 
-def _busy_wait(context: AssemblyContext, executor: Executor, core: str) -> str | None:
+def _busy_wait(context: AssemblyContext, executor: Executor, thread: ThreadItems, core: str) -> str | None:
     """Add the runnable in which the thread of an executor waits without sleeping; None if it does not."""
-    items = thread_items(executor.name, context.description.middleware)
-    times = None if items is None else items.busy_wait(executor.name, context.description.os)
+    times = thread.busy_wait(executor.name, context.description.os)
     if times is None:
         return None
     frequency, name = context.controller.frequencies[core], f"{executor.name}_Busy_Wait"

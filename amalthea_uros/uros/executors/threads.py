@@ -9,10 +9,12 @@ the last one.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import count
 from typing import NamedTuple
 
-from amalthea_uros._internal.records import dataclass, replace
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.distributions import Boundaries
 from amalthea_uros.perf.executors import LoopKind, ThreadLoop, ThreadPlace
@@ -51,7 +53,7 @@ class LoopPart:
     after: tuple[LoopItem, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ThreadItems:
     """The items of the loop of a thread.
 
@@ -63,29 +65,39 @@ class ThreadItems:
     owner: str
     items: tuple[LoopItem, ...]
 
-    @property
+    @cached_property
     def parts(self) -> tuple[LoopPart, ...]:
         """Its parts in order, that of its first executor first."""
         begins = [item.spin_some is not None for item in self.items]
         spins = any(begins)
         first = (begins if spins else [item.uses_agent for item in self.items]).index(True)
-        parts: list[LoopPart] = []
-        names: Counter[str] = Counter()
+        groups: list[list[LoopItem]] = []
         for item in (*self.items[first:], *self.items[:first]):
-            if item.spin_some is not None:
-                parts.append(LoopPart(name=item.executor or self.owner, timeout=item.spin_some))
-            elif not item.uses_agent:
-                parts[-1] = replace(parts[-1], after=(*parts[-1].after, item))
+            continues = not item.uses_agent or (groups and groups[-1][-1].uses_agent)
+            if item.spin_some is None and continues:
+                groups[-1].append(item)
             else:
-                own = f"{self.owner}_{_what(item)}"
-                names[own] += 1
-                sent = SentItem(own if names[own] == 1 else f"{own}_{names[own]}", item)
-                if parts and parts[-1].sent and not parts[-1].after:
-                    parts[-1] = replace(parts[-1], sent=(*parts[-1].sent, sent))
-                else:
-                    number = sum(bool(each.sent) for each in parts) + spins
-                    parts.append(LoopPart(name=self._name_of_sender(number), sent=(sent,)))
-        return tuple(parts)
+                groups.append([item])
+        senders, names = count(int(spins)), Counter[str]()
+        return tuple(self._part_of(group, senders, names) for group in groups)
+
+    def _part_of(self, items: Sequence[LoopItem], senders: Iterator[int], names: Counter[str]) -> LoopPart:
+        """A part of its items: a spin or what is sent, then waits.
+
+        Parameters
+        ----------
+        senders, names : the numbers of parts that send, and how often each name of an item was given
+        """
+        after = tuple(item for item in items if item.spin_some is None and not item.uses_agent)
+        if items[0].spin_some is not None:
+            return LoopPart(name=items[0].executor or self.owner, timeout=items[0].spin_some, after=after)
+        sent = tuple(self._sent(item, names) for item in items if item.uses_agent)
+        return LoopPart(name=self._name_of_sender(next(senders)), sent=sent, after=after)
+
+    def _sent(self, item: LoopItem, names: Counter[str]) -> SentItem:
+        own = f"{self.owner}_{_what(item)}"
+        names[own] += 1
+        return SentItem(own if names[own] == 1 else f"{own}_{names[own]}", item)
 
     def _name_of_sender(self, number: int) -> str:
         """The name of what sends, of several in the loop; where nothing spins, the first one has that of the section."""
@@ -94,7 +106,11 @@ class ThreadItems:
     @property
     def executors(self) -> tuple[str, ...]:
         """The executors of its parts, in order."""
-        return tuple(each.name for each in self.parts)
+        return tuple(self._by_name)
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, LoopPart]:
+        return {each.name: each for each in self.parts}
 
     def pace(self, os: OsSection) -> Time:
         """The least time between two passes of the loop: its sleeps, in the long run."""
@@ -128,7 +144,7 @@ class ThreadItems:
         return Boundaries(lower=sum(waits), upper=sum(_latest(each, os) for each in waits)) if waits else None
 
     def _part(self, name: str) -> LoopPart:
-        return next(each for each in self.parts if each.name == name)
+        return self._by_name[name]
 
 
 def threads_with_items(middleware: Middleware) -> Iterator[ThreadItems]:
@@ -185,24 +201,24 @@ def _latest(wait: Time, os: OsSection) -> Time:
     return wait if wait % MILLISECOND else wait + (MILLISECOND if os.tick is None else os.tick)
 
 
-def thread_items(name: str, middleware: Middleware) -> ThreadItems | None:
-    """The items of the loop that an executor is a part of; None if no list describes it."""
-    return next((each for each in threads_with_items(middleware) if name in each.executors), None)
+def threads_by_executor(middleware: Middleware) -> Mapping[str, ThreadItems]:
+    """The threads whose loops are lists, by the executors that are parts of them."""
+    # An executor that two loops name, which is an error, is in the first one.
+    return {name: each for each in reversed(list(threads_with_items(middleware))) for name in each.executors}
 
 
-def in_thread_order(executors: Sequence[str], middleware: Middleware) -> list[str]:
+def in_thread_order(executors: Collection[str], threads: Mapping[str, ThreadItems]) -> list[str]:
     """Executors, with those of a thread in the order in which they spin."""
     order: dict[str, None] = {}
     for name in executors:
-        items = thread_items(name, middleware)
-        order |= dict.fromkeys((name,) if items is None else items.executors)
+        if name not in order:
+            order |= dict.fromkeys(threads[name].executors if name in threads else (name,))
     return [name for name in order if name in executors]
 
 
-def threads_of(executors: Sequence[ExecutorSection], middleware: Middleware) -> list[str]:
+def threads_of(executors: Iterable[ExecutorSection], threads: Mapping[str, ThreadItems]) -> list[str]:
     """The threads in which executors spin, each once, by the names of their first executors."""
-    names = (each.name for each in executors)
-    return list(dict.fromkeys(name if (items := thread_items(name, middleware)) is None else items.owner for name in names))
+    return list(dict.fromkeys(threads[each.name].owner if each.name in threads else each.name for each in executors))
 
 
 def check_threads_of_loops(middleware: Middleware, notes: Notes) -> None:
