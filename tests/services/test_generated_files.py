@@ -272,7 +272,7 @@ def test_large_files_are_checked_quickly(tmp_path):
     options = "\n".join(f'"-DRMW_UXRCE_MAX_NODE{number}=1", // x' for number in range(20_000))
     findings = checked(RCLC, META.format(options + "\n", ""), tmp_path)
     assert len(findings) == 100
-    with pytest.raises(ReadError, match="") as caught:
+    with pytest.raises(ReadError) as caught:
         checked(RCLC, " " * (2 << 20), tmp_path)
     assert "larger than" in caught.value.findings[0].message
 
