@@ -13,13 +13,13 @@ from amalthea_uros.timing.basics.settings import Settings
 
 
 def solved(system: System, settings: Settings) -> Solution:
-    """The response times for unknown phases, with the messages of the host as it sends them."""
+    """The response times for unknown phases, with the messages of the host and of other controllers as these send them."""
     solution = solve(timing_context(system, settings))
-    if not solution.context.system.host.executors:
+    if not solution.context.system.host.executors and len(solution.context.system.clients) == 1:
         return solution
-    from amalthea_uros.analyze.host.handover import with_messages_of_host
+    from amalthea_uros.analyze.host.handover import with_messages_of_others
 
-    return with_messages_of_host(system, solution)
+    return with_messages_of_others(system, solution)
 
 
 def executors_and_messages(
@@ -32,5 +32,6 @@ def executors_and_messages(
     from amalthea_uros.executors.bounds.findings import note_executors
 
     results = evaluate_executors_and_messages(solution)
-    note_executors(results[0], solution)
+    for client in solution.clients:
+        note_executors([results[0][each.name] for each in client.context.system.executors], client)
     return results

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from fractions import Fraction
 
@@ -165,3 +165,14 @@ class ExecutorOccurrences:
     lateness: Mapping[str, Time | None] = field(default_factory=dict)
     again: Mapping[str, EventModel | None] = field(default_factory=dict)
     overrunning: frozenset[str] = frozenset()
+
+
+def together(occurrences: Iterable[ExecutorOccurrences]) -> ExecutorOccurrences:
+    """The occurrences of the executors of all controllers."""
+    every = list(occurrences)
+    return ExecutorOccurrences(
+        sent={name: each for found in every for name, each in found.sent.items()},
+        lateness={name: each for found in every for name, each in found.lateness.items()},
+        again={name: each for found in every for name, each in found.again.items()},
+        overrunning=frozenset(name for found in every for name in found.overrunning),
+    )

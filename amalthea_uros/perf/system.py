@@ -16,7 +16,7 @@ from amalthea_uros.perf.hardware import Cache, Clock, Connection, Core, Hardware
 from amalthea_uros.perf.host import Host, HostCallback
 from amalthea_uros.perf.mapping import Mapping as SystemMapping
 from amalthea_uros.perf.named import Named
-from amalthea_uros.perf.network import Direction, Network, Span, Transmission
+from amalthea_uros.perf.network import Direction, Network, Purpose, Span, Transmission
 from amalthea_uros.perf.os import InterruptController, Os, Scheduler
 from amalthea_uros.perf.software import Channel, Label, Process, Runnable, Software
 from amalthea_uros.perf.stimuli import Stimuli, Stimulus
@@ -181,6 +181,32 @@ class System:
             if each.place is not None:
                 tasks.setdefault(each.place.thread, set()).add(each.task)
         return {thread: frozenset(names) for thread, names in tasks.items()}
+
+    @cached_property
+    def clients(self) -> tuple[System, ...]:
+        """The system as each client of the middleware sees it: with no executors and wires but its own; itself if it has one."""
+        ends = dict.fromkeys(wire.executors for wire in self.network.wires)
+        if all(not each for each in ends):
+            return (self,)
+        apart = {name for each in ends for name in each}
+        others = tuple(each.name for each in self.executors if each.name not in apart)
+        return tuple(self._client(each) for each in ends) + ((self._client(others),) if others and others not in ends else ())
+
+    def _client(self, executors: tuple[str, ...]) -> System:
+        wires = tuple(wire for wire in self.network.wires if wire.executors == executors)
+        names = {wire.name for wire in wires}
+        # The agent can bring what other clients publish.
+        published = Direction.TO_AGENT, Purpose.DATA
+        sent = tuple(each for each in self.network.transmissions if each.wire in names or (each.direction, each.purpose) == published)
+        return replace(
+            self,
+            executors=tuple(each for each in self.executors if each.name in executors),
+            network=replace(self.network, wires=wires, transmissions=sent),
+        )
+
+    def client_at(self, wire: str) -> System:
+        """The system as the client at the end of a wire sees it."""
+        return next((each for each in self.clients if any(own.name == wire for own in each.network.wires)), self)
 
     @cached_property
     def callback_of_host_event(self) -> Mapping[str, HostCallback]:

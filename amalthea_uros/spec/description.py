@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal, Self
 
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.fields import entry
+from amalthea_uros.spec.fields import entry, examines
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.host import HostSection
 from amalthea_uros.spec.middleware import Middleware
@@ -14,11 +15,20 @@ from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.processes import IsrSection, LabelSection, TaskSection
 from amalthea_uros.spec.requirements import Chain, RequirementSection
 from amalthea_uros.spec.section import EXTENSION, DescriptionSection
-from amalthea_uros.spec.values import WHOLE_NUMBER, Name
+from amalthea_uros.spec.values import WHOLE_NUMBER, Name, problem
+
+
+class ControllerFile(DescriptionSection):
+    """A controller of a robot, which a description of its own describes."""
+
+    name: Name
+    """Name of the controller; it is put before the names of all that is described in its file, e.g. `drive_Motor`."""
+    file: Name
+    """Its description, relative to the directory of this file, e.g. `drive.yaml`."""
 
 
 class Description(DescriptionSection):
-    """A micro-ROS application on a controller, and the other software that runs there."""
+    """A micro-ROS application on a controller, and the other software that runs there; or a robot with several controllers."""
 
     amuros: Annotated[Literal[1], WHOLE_NUMBER]
     """Version of the format."""
@@ -32,6 +42,8 @@ class Description(DescriptionSection):
     """The generic micro-ROS model."""
     application: Application = entry(default_factory=Application.model_construct)
     """The micro-ROS application."""
+    controllers: list[ControllerFile] = entry(default_factory=list)
+    """The controllers of a robot that has several ones, instead of `hardware` and everything that runs on it."""
     host: HostSection | None = None
     """The host with ROS 2 at the other end of the transport."""
     tasks: list[TaskSection] = entry(default_factory=list)
@@ -45,6 +57,29 @@ class Description(DescriptionSection):
     requirements: list[RequirementSection] = entry(default_factory=list)
     """Requirements on processes."""
 
+    @classmethod
+    def _prepared(cls, value: Any) -> Any:
+        value = super()._prepared(value)
+        has_several = isinstance(value, dict) and "controllers" in value and "hardware" not in value
+        return value | {"hardware": {}} if has_several else value
+
+    @classmethod
+    def implied_keys(cls) -> Mapping[str, Sequence[str]]:
+        """Each controller states its hardware in its own file."""
+        return {"controllers": ["hardware"]}
+
+    @examines
+    def _describes_one_or_several(self) -> Self:
+        if self.controllers:
+            own = ["hardware"] if self.hardware.model_fields_set else []
+            own += [key for key in _OF_ONE_CONTROLLER if self.states(key)]
+            if own:
+                raise problem(f"{own[0]!r} cannot be combined with 'controllers': state it in the file of a controller")
+        return self
+
+
+#: What a controller has, besides its hardware.
+_OF_ONE_CONTROLLER = ("os", "middleware", "application", "tasks", "isrs", "labels")
 
 #: The draft that editors support.
 _DRAFT = "http://json-schema.org/draft-07/schema#"

@@ -205,9 +205,9 @@ class HostSection(DescriptionSection):
     """The computers."""
     latency: LatencySection | None = None
     """Latency of all topics without their own."""
-    executors: list[HostExecutorSection] = entry(min_length=1)
+    executors: list[HostExecutorSection] = entry(default_factory=list)
     """The executors."""
-    nodes: list[HostNodeSection] = entry(min_length=1)
+    nodes: list[HostNodeSection] = entry(default_factory=list)
     """The nodes."""
     topics: list[HostTopicSection] = entry(default_factory=list)
     """Topics with a latency or a rate of their own."""

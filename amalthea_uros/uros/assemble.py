@@ -8,7 +8,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.description import ControllerFile, Description
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.notes import Notes
@@ -16,6 +16,7 @@ from amalthea_uros.uros.application.serving import placement
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
+from amalthea_uros.uros.chain_members import ChainMembers
 from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.memory import MemoryDemand, memory_of
 from amalthea_uros.uros.memory_findings import check_memory
@@ -40,6 +41,7 @@ class Assembly(Brief):
     ----------
     description : what was assembled
     profile : of its middleware
+    members : what paths of chains over the system can contain
     choices : the periods of executors without a loop and of the callbacks' tasks, with reasons
     placement : where callbacks run that do not say so, and who decided it; "" without callbacks
     bus, messages : the classic CAN bus, None if there is none, and what is sent on it
@@ -48,11 +50,13 @@ class Assembly(Brief):
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
     priority_scale : what priorities of tasks mean in the description
+    controllers : of a robot; what runs on them is described in their files, and here only its times are known
     """
 
     description: Description
     profile: Profile
     system: System
+    members: ChainMembers
     choices: tuple[PeriodChoice, ...]
     placement: str
     messages: tuple[BusMessage, ...]
@@ -63,6 +67,7 @@ class Assembly(Brief):
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
     priority_scale: PriorityScale
+    controllers: tuple[ControllerFile, ...] = ()
 
     @property
     def pools(self) -> tuple[Option, ...]:
@@ -118,7 +123,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
     application, middleware = context.description.application, context.description.middleware
     options = context.profile.options(application)
     added = add_processes(context, options, database)
-    system = assembled_system(context, added.callbacks, added.network)
+    system, members = assembled_system(context, added.callbacks, added.network)
     memory = memory_of(context.description, hardware, system, context.profile)
     check_memory(context, options, added.callbacks, memory, hardware)
     first = next((choice for choice in added.choices if choice.task == choice.executor), None)
@@ -126,6 +131,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
         description=context.description,
         profile=context.profile,
         system=system,
+        members=members,
         choices=added.choices,
         placement=placement(context.description, context.controller.platform) if added.callbacks else "",
         messages=added.messages,

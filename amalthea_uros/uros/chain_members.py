@@ -16,6 +16,7 @@ from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk
 from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.network import Direction, Network, Purpose, plain_topic
+from amalthea_uros.perf.qualified import qualified, qualified_name
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.uros.application.callbacks import Callback, body_name
 from amalthea_uros.uros.assembly.context import AssemblyContext
@@ -207,3 +208,43 @@ class Topics:
                 change = ProcessChange.ACTIVATE if is_received else ProcessChange.TERMINATE
                 return MessageOfTopic(ProcessEvent(name=name, process=each.name, change=change), callback, each.processes)
         return MessageOfTopic(CustomEvent(name=name), callback)
+
+
+class ChainMembers(NamedTuple):
+    """What the path of a chain can contain, besides callbacks of the host.
+
+    Attributes
+    ----------
+    elements : by the name that a path uses
+    """
+
+    elements: Mapping[str, ChainElement]
+    topics: Topics
+
+    def of_part(self, part: str) -> ChainMembers:
+        """The members as those of a part of a larger system."""
+        elements = {qualified_name(part, name): qualified(element, part) for name, element in self.elements.items()}
+        topics = self.topics
+        return ChainMembers(elements, Topics(_of_part(topics.receivers, part), _of_part(topics.senders, part), topics.network))
+
+
+def members_together(parts: Iterable[ChainMembers], network: Network) -> ChainMembers:
+    """The members of several parts of a system.
+
+    Parameters
+    ----------
+    network : of the whole system
+    """
+    elements: dict[str, ChainElement] = {}
+    receivers: dict[str, list[str]] = {}
+    senders: dict[str, list[str]] = {}
+    for part in parts:
+        elements |= part.elements
+        for found, own in ((receivers, part.topics.receivers), (senders, part.topics.senders)):
+            for topic, callbacks in own.items():
+                found.setdefault(topic, []).extend(callbacks)
+    return ChainMembers(elements, Topics(receivers, senders, network))
+
+
+def _of_part(callbacks: Mapping[str, Sequence[str]], part: str) -> dict[str, list[str]]:
+    return {topic: [qualified_name(part, name) for name in names] for topic, names in callbacks.items()}

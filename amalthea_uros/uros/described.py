@@ -11,12 +11,13 @@ from amalthea_uros._internal.paths import TEXT, folder_of
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.description import ControllerFile, Description
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import Draft, content_draft, description_text, text_draft
 from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
 from amalthea_uros.trace.can.frames import EXTENDED
 from amalthea_uros.uros.assemble import Assembly, assemble
+from amalthea_uros.uros.robot import assemble_robot
 from amalthea_uros.uros.transports.can import ForeignFrame
 
 
@@ -77,12 +78,19 @@ def describe_content(content: Mapping[str, Any]) -> Described:
     return _described(content_draft(content, Description), Path())
 
 
-def _described(draft: Draft[Description], folder: Path, platform: str | None = None) -> Described:
-    """What a draft describes, unless something in it is wrong."""
+def _described(
+    draft: Draft[Description], folder: Path, platform: str | None = None, *, is_part: bool = False
+) -> Described:
+    """What a draft describes, unless something in it is wrong.
+
+    Parameters
+    ----------
+    is_part : whether it is the file of a controller of a robot
+    """
     try:
         if draft.section is None:
             raise ReadError(draft.findings)
-        found = _assembled(draft.section, folder, platform)
+        found = _assembled(draft.section, folder, platform, is_part)
     except ReadError as error:
         raise ReadError(draft.with_more(error.findings)) from None
     if draft.findings:
@@ -90,7 +98,29 @@ def _described(draft: Draft[Description], folder: Path, platform: str | None = N
     return found
 
 
-def _assembled(description: Description, folder: Path, platform: str | None) -> Described:
+def _robot(description: Description, folder: Path) -> Described:
+    """A robot, whose controllers are described in files of their own."""
+    files = {section.name: _described_controller(section, folder) for section in description.controllers}
+    assembly = assemble_robot(description, {name: each.assembly for name, each in files.items()})
+    types = {core: each.type or "" for core, each in assembly.system.cores.items()}
+    return Described(description, assembly, None, types, description)
+
+
+def _described_controller(section: ControllerFile, folder: Path) -> Described:
+    path = folder / section.file
+    if not path.is_file():
+        advice = "Give a path relative to the directory of this file."
+        message = f"file {str(path)!r} of the controller {section.name!r} not found"
+        raise ReadError([Finding("APP001", Severity.ERROR, message, section.location("file"), advice)])
+    return _described(text_draft(path, description_text(path), Description), folder_of(path), is_part=True)
+
+
+def _assembled(description: Description, folder: Path, platform: str | None, is_part: bool) -> Described:
+    if description.controllers:
+        if is_part:
+            message, place = "the file of a controller describes a robot of several controllers", description.location("controllers")
+            raise ReadError([Finding("APP003", Severity.ERROR, message, place, "Name the files of its controllers instead.")])
+        return _robot(description, folder)
     whole, name, findings, assumptions = complete(description, folder, platform)
     try:
         assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder), assumptions)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.host import (
@@ -18,16 +18,26 @@ from amalthea_uros.perf.host import (
 )
 from amalthea_uros.perf.network import Span, plain_topic
 from amalthea_uros.spec import host as spec
-from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.uros.application.callbacks import interval_of_rate
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.host_callbacks import callbacks_of, kind_of, published_by, topic_of
 
 
-def host_of(description: Description, problems: Notes) -> Host:
-    """The host that a description describes; an empty one if it has none."""
-    return Host() if description.host is None else _HostBuilder(description.host, problems).host(description)
+def host_of(section: spec.HostSection | None, published: Collection[str], problems: Notes) -> Host:
+    """The host that a section describes; an empty one if there is none.
+
+    Parameters
+    ----------
+    published : the topics that controllers publish
+    """
+    return Host() if section is None else _HostBuilder(section, problems).host(published)
+
+
+def topics_of_nodes(application: Application) -> set[str]:
+    """The topics that nodes of a controller publish."""
+    return {plain_topic(each.topic) for node in application.nodes for each in node.publishers}
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +45,10 @@ class _HostBuilder:
     section: spec.HostSection
     problems: Notes
 
-    def host(self, description: Description) -> Host:
-        """The host."""
+    def host(self, published: Collection[str]) -> Host:
+        """The host; see `host_of`."""
         section = self.section
-        self._check(description)
+        self._check(published)
         return Host(
             release=RosRelease(section.ros),
             computers=tuple(
@@ -49,7 +59,7 @@ class _HostBuilder:
             topics=tuple(self._topics()),
         )
 
-    def _check(self, description: Description) -> None:
+    def _check(self, published: Collection[str]) -> None:
         section, problems = self.section, self.problems
         for kind, items in (
             ("computer", section.computers),
@@ -76,7 +86,7 @@ class _HostBuilder:
                 problems.error(
                     "APP003", message, computer.location("isolated"), "Correct the number of the core, or set 'cores'."
                 )
-        self._check_sources(description)
+        self._check_sources(published)
         self._check_services()
 
     def _check_services(self) -> None:
@@ -105,14 +115,11 @@ class _HostBuilder:
                 )
         self.problems.unique("client of a service", ((each.service, each.location("service")) for _, each in clients))
 
-    def _check_sources(self, description: Description) -> None:
+    def _check_sources(self, published: Collection[str]) -> None:
         """Report topics whose rate is stated although it follows from what publishes them."""
-        published = {
-            plain_topic(topic) for node in self.section.nodes for each in callbacks_of(node) for topic in each.publishes
-        }
-        published |= {plain_topic(each.topic) for node in description.application.nodes for each in node.publishers}
+        own = {plain_topic(topic) for node in self.section.nodes for each in callbacks_of(node) for topic in each.publishes}
         for topic in self.section.topics:
-            if topic.rate is not None and plain_topic(topic.topic) in published:
+            if topic.rate is not None and plain_topic(topic.topic) in own.union(published):
                 message = f"the rate of {topic.topic!r} is stated, but follows from what publishes it"
                 self.problems.error("APP003", message, topic.location("rate"), "Remove 'rate'.")
             if topic.jitter is not None and topic.rate is None:

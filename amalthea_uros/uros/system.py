@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Mapping as AbstractMapping
 from dataclasses import replace
+from typing import NamedTuple
 
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.activities import AccessKind, LabelAccess, walk
 from amalthea_uros.perf.constraints import (
     Bound,
-    Constraints,
     JitterLimit,
     Limit,
     Requirement,
@@ -25,12 +25,13 @@ from amalthea_uros.perf.software import Label, Software
 from amalthea_uros.perf.stimuli import Stimuli
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec import requirements as spec
+from amalthea_uros.spec.description import Description
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.units import DataSize
 from amalthea_uros.uros.application.callbacks import Callback
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext
-from amalthea_uros.uros.chain_members import ChainElement, Topics, chain_elements
+from amalthea_uros.uros.chain_members import ChainElement, ChainMembers, Topics, chain_elements
 from amalthea_uros.uros.chains import ChainBuilder
 from amalthea_uros.uros.executors.activation import with_triggered_iterations
 from amalthea_uros.uros.executors.handles import deadlines
@@ -39,7 +40,14 @@ from amalthea_uros.uros.os import check_shared_priorities, isr_allocations, os_o
 from amalthea_uros.uros.transports.messages import waits_outside
 
 
-def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None) -> System:
+class AssembledSystem(NamedTuple):
+    """A system, and what paths of chains over it can contain."""
+
+    system: System
+    members: ChainMembers
+
+
+def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None) -> AssembledSystem:
     """The system of all that has been added to the context."""
     description, notes = context.description, context.notes
     _check_misspelled_labels(context)
@@ -50,13 +58,27 @@ def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], ne
     waits = waits_outside(callbacks, system, context.profile)
     system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
-    chains = ChainBuilder(elements, Topics.of(callbacks, system.network), Dataflow(system), notes)
+    members = ChainMembers(elements, Topics.of(callbacks, system.network))
+    system = with_demands(system, members, description, notes)
+    demanded = (*system.constraints.requirements, *deadlines(context.executors, callbacks))
+    return AssembledSystem(replace(system, constraints=replace(system.constraints, requirements=demanded)), members)
+
+
+def with_demands(system: System, members: ChainMembers, description: Description, notes: Notes) -> System:
+    """A system with the chains and requirements of a description, besides those that it has."""
+    known = {each.name: each for each in system.events.events}
+    chains = ChainBuilder(members.elements, members.topics, Dataflow(system), notes, events=known)
     limits = chains.add_all(description.chains)
-    demanded = (*_requirements(description.requirements, elements, notes), *deadlines(context.executors, callbacks))
+    demanded = tuple(_requirements(description.requirements, members.elements, notes))
+    constraints = system.constraints
     return replace(
         system,
-        events=Events(events=tuple(chains.events.values()), chains=tuple(chains.chains.values())),
-        constraints=Constraints(constraints=limits, requirements=demanded),
+        events=Events(events=tuple(chains.events.values()), chains=(*system.events.chains, *chains.chains.values())),
+        constraints=replace(
+            constraints,
+            constraints=(*constraints.constraints, *limits),
+            requirements=(*constraints.requirements, *demanded),
+        ),
     )
 
 

@@ -83,6 +83,19 @@ class HostHops:
             raise UnknownError(difference)
         return self._topic(topic)
 
+    def between(self, sent: Transmission, received: Transmission) -> Iterator[Hop]:
+        """From the agent of one controller to that of another one; nothing within one agent.
+
+        Raises
+        ------
+        UnknownError : the messages are not as stated.
+        """
+        if sent.wire == received.wire:
+            return
+        if difference := violated(received, self.host.releases):
+            raise UnknownError(difference)
+        yield self._topic(plain_topic(received.topic))
+
     def losses(self, segment: HostSegment) -> Iterator[str]:
         """How messages can be lost on the path of a chain."""
         for callback in segment.callbacks:

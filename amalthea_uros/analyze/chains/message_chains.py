@@ -65,9 +65,15 @@ def evaluate_executors_and_messages(
     ----------
     solution : for unknown phases, in which any job can take what comes from outside
     """
-    jitter, sending, host = arrival_jitter(solution), sending_times(solution), evaluate_host(solution)
-    executors = Results(evaluate_executors(solution, sending=sending, extra_jitter=jitter))
-    system = solution.context.system
+    jitter: dict[str, Time | None] = {}
+    sending: dict[str, Span] = {}
+    found: list[ExecutorResult] = []
+    for client in solution.clients:
+        own_jitter, own_sending = arrival_jitter(client), sending_times(client)
+        found += evaluate_executors(client, sending=own_sending, extra_jitter=own_jitter)
+        jitter |= own_jitter
+        sending |= own_sending
+    executors, host, system = Results(found), evaluate_host(solution), solution.context.system
     evaluator = MessageChains(
         ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending, HostHops(host, solution)
     )
@@ -156,7 +162,7 @@ class MessageChains:
                 hops[-1] = self._until_written(before, hops[-1])
             match segment:
                 case Transmission() as transmission:
-                    if isinstance(before, Transmission):
+                    if isinstance(before, Transmission) and before.wire == transmission.wire:
                         assumptions.append(_THERE_AND_BACK)
                     hops += self._message(before, transmission, hops)
                 case CallbackSegment():
@@ -181,7 +187,9 @@ class MessageChains:
             is_from_host = isinstance(before, Transmission) and before.direction is Direction.TO_AGENT
             if isinstance(before, HostSegment):
                 yield self.host.leaving(before, transmission)
-            elif before is not None and not is_from_host:
+            elif isinstance(before, Transmission) and is_from_host:
+                yield from self.host.between(before, transmission)
+            elif before is not None:
                 raise UnknownError(f"{name_of(before)!r} sends nothing that the agent forwards to {topic!r}")
             yield agent
             yield from received(transmission, self.solution)

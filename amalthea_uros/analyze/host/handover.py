@@ -1,9 +1,10 @@
-"""The messages that the host sends to the controller: how often they really come, instead of what a subscription states.
+"""The messages that the host and other controllers send to a controller: how often they really come, instead of what is stated.
 
-A subscription on a controller states an interval and a jitter. If callbacks of the host publish its topic, both follow from these: the
-controller is analysed with the interval of the host, and with the greater jitter. What the controller sends depends on that in turn,
-so that both sides are analysed until nothing changes (K. Richter 2005). If no interval and jitter describe what the host sends, or
-the description contradicts itself, it is unknown how often the messages come, and so is everything that depends on them.
+A subscription on a controller states an interval and a jitter. If callbacks of the host or of another controller publish its topic,
+both follow from these: the controller is analysed with the interval of the publisher, and with the greater jitter. What the controller
+sends depends on that in turn, so that all sides are analysed until nothing changes (K. Richter 2005). If no interval and jitter describe
+what is sent, or the description contradicts itself, it is unknown how often the messages come, and so is everything that depends on
+them.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, aggregated
 from amalthea_uros.units import Time, time_text
 
@@ -29,8 +31,8 @@ from amalthea_uros.units import Time, time_text
 _MAX_PASSES = 30
 
 
-def with_messages_of_host(described: System, solution: Solution) -> Solution:
-    """The solution in which messages of the host come as the host sends them; what was stated otherwise becomes a finding.
+def with_messages_of_others(described: System, solution: Solution) -> Solution:
+    """The solution in which messages come as the host and others send them; what was stated otherwise becomes a finding.
 
     Parameters
     ----------
@@ -56,22 +58,22 @@ def _checked(described: System, stated: System, solution: Solution) -> Solution:
         topic = plain_topic(transmission.topic)
         try:
             if difference := violated(transmission, releases):
-                errors.append((difference, releases.topics.publishers(topic)[0]))
+                errors.append((difference, next(iter(releases.topics.publishers(topic)), transmission)))
                 unknown[transmission] = difference
         except UnknownError as error:
-            unknown[transmission] = f"it is not known how often the host sends {topic!r}: {error}"
+            unknown[transmission] = f"it is not known how often {_sender(transmission, releases)} sends {topic!r}: {error}"
         for handle, after in changed:
             if handle.transmission == transmission.name and handle.interval != after.interval:
-                unknown.setdefault(
-                    transmission, f"the host does not send {topic!r} in the interval that {handle.name!r} states"
-                )
+                sender = _sender(transmission, releases)
+                unknown.setdefault(transmission, f"{sender} does not send {topic!r} in the interval that {handle.name!r} states")
     system = solution.context.system
     for transmission, reason in unknown.items():
         system = with_unknown_times(system, transmission, reason, described)
     if system is not solution.context.system:
         solution = solve(timing_context(system, solution.context.settings))
+    senders = {each.name: _sender(each, releases) for each in handed_over(releases)}
     for handle, after in changed:
-        solution.context.notes.warning("HST003", _change(handle, after), handle)
+        solution.context.notes.warning("HST003", _change(handle, after, senders[handle.transmission or ""]), handle)
     for difference, publisher in errors:
         solution.context.notes.error("HST004", difference, publisher)
     return solution
@@ -84,27 +86,32 @@ def _changes(stated: System, solution: Solution) -> list[tuple[Handle, Handle]]:
     return [(one, other) for one, other in pairs if (one.interval, one.jitter) != (other.interval, other.jitter)]
 
 
-def _change(stated: Handle, analysed: Handle) -> str:
-    message = f"the host sends the messages of {stated.name!r} every {time_text(analysed.interval or 0)}"
+def _sender(transmission: Transmission, releases: HostReleases) -> str:
+    """Who sends a message to a controller."""
+    return "the host" if releases.topics.publishers(plain_topic(transmission.topic)) else "another controller"
+
+
+def _change(stated: Handle, analysed: Handle, sender: str) -> str:
+    message = f"{sender} sends the messages of {stated.name!r} every {time_text(analysed.interval or 0)}"
     if stated.interval == analysed.interval:
         return f"{message} with a jitter of up to {time_text(analysed.jitter)}, which is used instead of what the subscription states"
     return f"{message}, but the subscription states {time_text(stated.interval or 0)}, so that what depends on them is unknown"
 
 
 def handed_over(releases: HostReleases) -> list[Transmission]:
-    """The messages that the host sends to the controller."""
-    topics = releases.topics
+    """The messages that the host or another controller sends to a controller."""
+    topics, system = releases.topics, releases.topics.solved.context.system
     return [
         each
-        for each in topics.solved.context.system.network.transmissions
+        for each in system.network.transmissions
         if each.direction is Direction.TO_CONTROLLER
         and each.purpose is Purpose.DATA
-        and topics.publishers(plain_topic(each.topic))
+        and (topics.publishers(plain_topic(each.topic)) or any(sent.wire != each.wire for sent in relayed(each, system)))
     ]
 
 
 def violated(transmission: Transmission, releases: HostReleases) -> str:
-    """How the messages of the host differ from those that were analysed, or why these are unknown; "" if they do not.
+    """How the messages of the publishers differ from those that were analysed, or why these are unknown; "" if they do not.
 
     Raises
     ------
@@ -113,16 +120,16 @@ def violated(transmission: Transmission, releases: HostReleases) -> str:
     if reason := why_unknown(transmission, releases.topics.solved.context.system):
         return reason
     topic, stated = plain_topic(transmission.topic), releases.topics.solved.event_models.get(transmission.name)
-    real, agent = _sent_by_host(transmission, releases), _agent_jitter(transmission)
+    real, agent = _published(transmission, releases), _agent_jitter(transmission)
     if not isinstance(real, PeriodicEvents) or not isinstance(stated, PeriodicEvents):
         return f"more than one publisher sends {topic!r}, so that the interval of {transmission.callback!r} is not that of the messages"
     if real.period != stated.period or real.jitter + agent > stated.jitter or stated.min_interarrival:
         times = f"every {time_text(real.period)} with a jitter of up to {time_text(real.jitter)}"
-        return f"the host sends {topic!r} {times}, for which the controller is not analysed"
+        return f"{_sender(transmission, releases)} sends {topic!r} {times}, for which the controller is not analysed"
     return ""
 
 
-def _sent_by_host(transmission: Transmission, releases: HostReleases) -> EventModel:
+def _published(transmission: Transmission, releases: HostReleases) -> EventModel:
     """The messages when they reach the agent.
 
     Raises
@@ -131,7 +138,7 @@ def _sent_by_host(transmission: Transmission, releases: HostReleases) -> EventMo
     """
     topic, topics = plain_topic(transmission.topic), releases.topics
     events = [releases.published(each) for each in topics.publishers(topic)]
-    # The agent sends back what the controller publishes, too.
+    # Agents also send on what controllers publish.
     events += [topics.from_controller(each) for each in topics.transmissions(topic, Direction.TO_AGENT)]
     return delayed(
         aggregated(tuple(events)), _spread(topics.latency(topic), f"the latency of the topic {topic!r} is not specified")
@@ -149,11 +156,11 @@ def _spread(span: Span, reason: str) -> Time:
 
 
 def _with_real_times(system: System, transmission: Transmission, releases: HostReleases) -> System:
-    """The system with the interval and at least the jitter of the host; the same object if it has them already or they are unknown."""
+    """The system with the interval and at least the jitter of the publisher; the same object if it has them already or they are unknown."""
     try:
         if not violated(transmission, releases):
             return system
-        real, agent = _sent_by_host(transmission, releases), _agent_jitter(transmission)
+        real, agent = _published(transmission, releases), _agent_jitter(transmission)
     except UnknownError:
         return system
     stimuli = [each for each in system.stimuli.stimuli if each.name in system.processes[transmission.name].stimuli]

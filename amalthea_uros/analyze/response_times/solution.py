@@ -8,7 +8,7 @@ from functools import cached_property
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
 from amalthea_uros.timing.activation.load import certain_loads, suppressible
@@ -46,6 +46,12 @@ class Solution:
     schedules: dict[str, CoreSchedule] = field(default_factory=dict, repr=False)
     migrating: Mapping[str, MigratingResult] = field(default_factory=dict, repr=False)
     _threads: dict[str, ExecutorThread] = field(default_factory=dict, repr=False)
+
+    @property
+    def clients(self) -> Sequence[Solution]:
+        """The solution as each client of the middleware sees it; itself if there is one."""
+        seen = self.context.system.clients
+        return (self,) if len(seen) == 1 else [replace(self, context=self.context.seen_by(each)) for each in seen]
 
     def schedule(self, core: str, with_slices: bool = False) -> CoreSchedule | None:
         """The schedules of a core; None if they are unknown or too long.

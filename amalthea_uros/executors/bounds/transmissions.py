@@ -83,7 +83,7 @@ def _only_sender(transmission: Transmission, solved: SolvedSystem) -> str | None
 
     One of its messages never waits for another one, however close to each other the task model has to assume them.
     """
-    system = solved.context.system
+    system = solved.context.system.client_at(transmission.wire)
     wire = next((each for each in system.network.wires if each.name == transmission.wire), None)
     if wire is None or not wire.keeps_sender or wire.loses_messages or len(wire.cores) < len(Direction):
         return None

@@ -117,7 +117,7 @@ def _sent_again(system: System) -> dict[str, str]:
     reasons = {
         wire.name: reason
         for wire in system.network.wires
-        if wire.loses_messages and wire.name in acknowledging and (reason := why_unbounded(wire, system))
+        if wire.loses_messages and wire.name in acknowledging and (reason := why_unbounded(wire, system.client_at(wire.name)))
     }
     return {
         each.name: f"messages are lost on {each.wire!r}, and reliable ones are sent again: {reasons[each.wire]}"

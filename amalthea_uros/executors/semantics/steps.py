@@ -183,7 +183,8 @@ def _sent(system: System) -> Iterator[Transmission]:
     }
     for each in system.transmissions.values():
         # Only an executor that loops acknowledges what it reads when it reads it.
-        is_asking = each.purpose is Purpose.HEARTBEAT and bool(system.executors) and each.wire in asking
-        is_reply = each.purpose is Purpose.ACKNOWLEDGEMENT and (system.executors or each.direction is Direction.TO_CONTROLLER)
+        loops = bool(system.client_at(each.wire).executors)
+        is_asking = each.purpose is Purpose.HEARTBEAT and loops and each.wire in asking
+        is_reply = each.purpose is Purpose.ACKNOWLEDGEMENT and (loops or each.direction is Direction.TO_CONTROLLER)
         if is_reply or is_asking or each.name in published or relayed(each, system):
             yield each

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.executors.semantics.callbacks import taker
@@ -24,7 +24,7 @@ from amalthea_uros.simulate.program.image import Image, Operation
 from amalthea_uros.simulate.program.message_lines import Lines
 from amalthea_uros.simulate.program.resources import Resources
 from amalthea_uros.simulate.sampling.words import RandomSource
-from amalthea_uros.timing.activation.relays import relayed
+from amalthea_uros.timing.activation.relays import latency_between, relayed
 from amalthea_uros.units import Time
 
 #: Assumptions.
@@ -92,14 +92,8 @@ class MessageRecords:
     def place(self) -> None:
         """Place the records; they are filled when all have a place."""
         self.host.place()
-        sessions: dict[str | None, int] = {}
-        for executor in self.system.executors:
-            slots = executor.waiting.slots
-            inbox = self.image.record(layout.INBOX_SIZE, {layout.SLOTS: layout.NEVER if slots is None else slots})
-            # Who receives nothing reads while a publication of it waits, whatever comes.
-            self.inboxes[executor.name] = sessions.setdefault(executor.session, inbox)
-            for handle in executor.handles:
-                self.handles[executor.name, handle.name] = self._handle(executor, handle)
+        for client in self.system.clients:
+            self._place_executors(client.executors)
         for transmission in self.system.transmissions.values():
             is_followed = transmission.purpose is not Purpose.FOREIGN and transmission.name in self.resources.processes
             if is_followed and self.system.processes[transmission.name].stimuli:
@@ -107,6 +101,17 @@ class MessageRecords:
                 self._assume(transmission)
         for name in self.transmissions:
             self._fill(self.system.transmissions[name])
+
+    def _place_executors(self, executors: Iterable[Executor]) -> None:
+        """Place the buffers and the handles of the executors of a client."""
+        sessions: dict[str | None, int] = {}
+        for executor in executors:
+            slots = executor.waiting.slots
+            inbox = self.image.record(layout.INBOX_SIZE, {layout.SLOTS: layout.NEVER if slots is None else slots})
+            # Who receives nothing reads while a publication of it waits, whatever comes.
+            self.inboxes[executor.name] = sessions.setdefault(executor.session, inbox)
+            for handle in executor.handles:
+                self.handles[executor.name, handle.name] = self._handle(executor, handle)
 
     def _assume(self, transmission: Transmission) -> None:
         """Say what is assumed of a message beyond what is stated."""
@@ -169,7 +174,7 @@ class MessageRecords:
             self._bring(transmission, system.stimuli_by_name[stimulus])
         self._acknowledge(transmission)
         lines = [
-            self.line(relay, self.lines.delay(f"relay {relay.name}", relay.agent), layout.TO_WIRE)
+            self.line(relay, self.lines.delay(f"relay {relay.name}", *self._on_its_way(transmission, relay)), layout.TO_WIRE)
             for relay in self._relays(transmission)
         ]
         first, end = self.image.items([*lines, *self.host.receiving_lines(transmission)])
@@ -179,6 +184,13 @@ class MessageRecords:
         """The messages as which the agent sends a message back."""
         every = (self.system.transmissions[name] for name in self.transmissions)
         return [each for each in every if transmission in relayed(each, self.system)]
+
+    def _on_its_way(self, sent: Transmission, relay: Transmission) -> Iterator[Span]:
+        """What a message takes from the agent until it is queued on the wire to its receiver."""
+        between = latency_between(sent, relay, self.system)
+        if between != Span(most=0):
+            yield between
+        yield relay.agent
 
     def _receiving(self, transmission: Transmission) -> dict[int, int]:
         """The fields of a transmission that the controller receives."""
@@ -208,7 +220,7 @@ class MessageRecords:
         """The executor that reads what no handle takes: an acknowledgement is read by whoever waits for it."""
         acknowledged = self.system.transmissions.get(transmission.acknowledges or "")
         sender = None if acknowledged is None else self.sender(acknowledged)
-        return sender or next(iter(self.system.executors), None)
+        return sender or next(iter(self.system.client_at(transmission.wire).executors), None)
 
     def sender(self, transmission: Transmission) -> Executor | None:
         """The executor that sends a message; None if none does that loops."""

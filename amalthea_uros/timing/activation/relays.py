@@ -1,22 +1,34 @@
-"""Messages that the agent sends back to the controller that has published them: their times are those of the publications."""
+"""Messages of controllers that come to a controller again: their times are those of the publications.
+
+An agent sends a message back itself. Between the agents of two controllers, the message takes the latency of its topic.
+"""
 
 from __future__ import annotations
 
 from amalthea_uros.perf.executors import Handle
-from amalthea_uros.perf.network import Direction, Purpose, Transmission, plain_topic
+from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
 from amalthea_uros.perf.system import System
 
 
 def relayed(transmission: Transmission, system: System) -> list[Transmission]:
-    """The messages that the agent sends back here as another one."""
+    """The messages of this controller and of others that agents send here as another one."""
     if transmission.direction is not Direction.TO_CONTROLLER or transmission.purpose is not Purpose.DATA:
         return []
     others = system.transmissions.values()
     return [
         each
         for each in others
-        if each.direction is Direction.TO_AGENT and each.purpose is Purpose.DATA and each.topic == transmission.topic
+        if (each.direction, each.purpose) == (Direction.TO_AGENT, Purpose.DATA)
+        and plain_topic(each.topic) == plain_topic(transmission.topic)
     ]
+
+
+def latency_between(sent: Transmission, received: Transmission, system: System) -> Span:
+    """The time of a message from the agent of the controller that sends it to that of the one that receives it; unknown if not stated."""
+    if sent.wire == received.wire:
+        return Span(most=0)
+    topic = plain_topic(received.topic)
+    return next((each.latency for each in system.host.topics if each.name == topic), Span())
 
 
 def comes_regularly(handle: Handle, system: System) -> bool:

@@ -1,0 +1,85 @@
+"""Systems as parts of a larger one: the same system with the name of the part before the names of its objects, and several joined."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass
+from enum import Enum
+from functools import cache
+from typing import Any, TypeVar
+
+from amalthea_uros._internal.records import fields, replace
+from amalthea_uros.perf.hardware import Feature
+from amalthea_uros.perf.named import Brief
+from amalthea_uros.perf.os import Parameter
+from amalthea_uros.perf.system import System
+
+T = TypeVar("T")
+M = TypeVar("M", bound=Brief)
+
+#: The models of a system.
+_MODELS = ("hardware", "os", "stimuli", "software", "mapping", "events", "constraints", "network")
+
+#: Fields whose texts name no object of a system: topics are the same for all controllers, others are literals or for people.
+_NO_NAMES = frozenset(
+    {
+        *("topic", "publishes", "agent", "assumptions", "policy", "needs"),
+        *("value", "literals", "initial"),
+        *("kind", "reason", "description", "origin"),
+    }
+)
+#: What belongs to the definition of a type or of a scheduling policy, whose words are the same everywhere.
+_WORDS = (Feature, Parameter)
+
+
+def qualified_name(part: str, name: str) -> str:
+    """The name of an object of a part among those of the whole system."""
+    return f"{part}_{name}"
+
+
+def qualified(value: T, part: str) -> T:
+    """A system, or something of it, with the name of the part before the names of objects."""
+    found: Any = value
+    if isinstance(found, (Enum, *_WORDS)):
+        return value
+    if isinstance(found, str):
+        return qualified_name(part, found) if found else found  # type: ignore[return-value]
+    if isinstance(found, tuple | frozenset):
+        return type(found)(qualified(each, part) for each in found)
+    if not is_dataclass(found):
+        return value
+    return replace(found, **{name: qualified(getattr(found, name), part) for name in _named(type(found))})  # type: ignore[no-any-return]
+
+
+@cache
+def _named(kind: type) -> tuple[str, ...]:
+    """The fields of a class that can contain names."""
+    return tuple(each.name for each in fields(kind) if each.init and each.name not in _NO_NAMES)
+
+
+def joined(parts: Mapping[str, System]) -> System:
+    """Several systems as one; each object has the name of its part before its own name.
+
+    Each wire says which executors are at its end, so that the clients of the middleware stay apart.
+    """
+    systems = [qualified(_with_ends(system, part), part) for part, system in parts.items()]
+    agents = dict.fromkeys(each.network.agent for each in systems if each.network.wires)
+    whole = System(
+        executors=tuple(executor for each in systems for executor in each.executors),
+        **{kind: _together([getattr(each, kind) for each in systems]) for kind in _MODELS},
+    )
+    return replace(whole, network=replace(whole.network, agent=" and ".join(agents) or whole.network.agent))
+
+
+def _with_ends(system: System, part: str) -> System:
+    """The system with the executors at the end of each wire, and with the name of the part in sentences about its times."""
+    network, ends = system.network, tuple(executor.name for executor in system.executors)
+    wires = tuple(replace(wire, executors=wire.executors or ends) for wire in network.wires)
+    assumptions = tuple(f"{part}: {sentence}" for sentence in network.assumptions)
+    return replace(system, network=replace(network, wires=wires, assumptions=assumptions))
+
+
+def _together(models: Sequence[M]) -> M:
+    """Several models of a kind as one: all objects of all of them."""
+    lists = (each.name for each in fields(models[0]) if isinstance(getattr(models[0], each.name), tuple))
+    return replace(models[0], **{name: tuple(item for each in models for item in getattr(each, name)) for name in lists})
