@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Self
 
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros.spec.application import Application
@@ -15,25 +15,14 @@ from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.processes import IsrSection, LabelSection, TaskSection
 from amalthea_uros.spec.requirements import Chain, RequirementSection
 from amalthea_uros.spec.section import EXTENSION, DescriptionSection
-from amalthea_uros.spec.values import WHOLE_NUMBER, Name, problem
+from amalthea_uros.spec.values import Name, VersionedSection, problem
 
 
-class ControllerFile(DescriptionSection):
-    """A controller of a robot, which a description of its own describes."""
+class ControllerSection(DescriptionSection):
+    """A micro-ROS application on a controller, and the other software that runs there."""
 
     name: Name
-    """Name of the controller; it is put before the names of all that is described in its file, e.g. `drive_Motor`."""
-    file: Name
-    """Its description, relative to the directory of this file, e.g. `drive.yaml`."""
-
-
-class Description(DescriptionSection):
-    """A micro-ROS application on a controller, and the other software that runs there; or a robot with several controllers."""
-
-    amuros: Annotated[Literal[1], WHOLE_NUMBER]
-    """Version of the format."""
-    name: Name
-    """Name of the application."""
+    """Name of the application, or of a controller of a robot."""
     hardware: HardwareSection
     """The controller."""
     os: OsSection = entry(default_factory=OsSection.model_construct)
@@ -42,10 +31,6 @@ class Description(DescriptionSection):
     """The generic micro-ROS model."""
     application: Application = entry(default_factory=Application.model_construct)
     """The micro-ROS application."""
-    controllers: list[ControllerFile] = entry(default_factory=list)
-    """The controllers of a robot that has several ones, instead of `hardware` and everything that runs on it."""
-    host: HostSection | None = None
-    """The host with ROS 2 at the other end of the transport."""
     tasks: list[TaskSection] = entry(default_factory=list)
     """Tasks of the controller that are not part of the micro-ROS application."""
     isrs: list[IsrSection] = entry(default_factory=list)
@@ -57,29 +42,78 @@ class Description(DescriptionSection):
     requirements: list[RequirementSection] = entry(default_factory=list)
     """Requirements on processes."""
 
+
+class RobotController(ControllerSection):
+    """One of several controllers: described here, or in a file of its own."""
+
+    file: Name | None = None
+    """The app.yaml that describes it, instead of the other keys; relative to the directory of this file, e.g. `drive.yaml`."""
+
     @classmethod
     def _prepared(cls, value: Any) -> Any:
-        value = super()._prepared(value)
-        has_several = isinstance(value, dict) and "controllers" in value and "hardware" not in value
-        return value | {"hardware": {}} if has_several else value
+        return _with_hardware_of("file", super()._prepared(value))
 
     @classmethod
     def implied_keys(cls) -> Mapping[str, Sequence[str]]:
-        """Each controller states its hardware in its own file."""
-        return {"controllers": ["hardware"]}
+        """The hardware is that of the file."""
+        return {"file": ["hardware"]}
 
     @examines
-    def _describes_one_or_several(self) -> Self:
-        if self.controllers:
-            own = ["hardware"] if self.hardware.model_fields_set else []
-            own += [key for key in _OF_ONE_CONTROLLER if self.states(key)]
-            if own:
-                raise problem(f"{own[0]!r} cannot be combined with 'controllers': state it in the file of a controller")
+    def _is_in_one_place(self) -> Self:
+        own = _stated_of_controller(self) if self.file is not None else []
+        if own:
+            raise problem(f"{own[0]!r} cannot be combined with 'file': state it there")
         return self
 
 
-#: What a controller has, besides its hardware.
-_OF_ONE_CONTROLLER = ("os", "middleware", "application", "tasks", "isrs", "labels")
+class Description(ControllerSection, VersionedSection):
+    """A micro-ROS application on a controller, and the other software that runs there; or a robot with several controllers."""
+
+    controllers: list[RobotController] = entry(default_factory=list)
+    """The controllers of a robot that has several ones, instead of `hardware` and what runs on it; the name of each is put before the
+    names of its tasks, callbacks and variables, e.g. `drive_Motor`."""
+    host: HostSection | None = None
+    """The host with ROS 2 at the other end of the transport."""
+
+    @classmethod
+    def _prepared(cls, value: Any) -> Any:
+        return _with_hardware_of("controllers", super()._prepared(value))
+
+    @classmethod
+    def implied_keys(cls) -> Mapping[str, Sequence[str]]:
+        """Each controller has its own hardware."""
+        return {"controllers": ["hardware"]}
+
+    @examines
+    def _has_one_or_several_controllers(self) -> Self:
+        own = _stated_of_controller(self) if self.controllers else []
+        if own:
+            raise problem(f"{own[0]!r} cannot be combined with 'controllers': state it in one of these")
+        return self
+
+    @classmethod
+    def of_controller(cls, section: RobotController) -> Self:
+        """The description of a controller of a robot as one of its own."""
+        values = {name: getattr(section, name) for name in ControllerSection.model_fields}
+        found = cls.model_construct(amuros=1, **values)
+        found._where, found._stated = section._where, section._stated
+        return found
+
+
+#: What only one controller has, besides its hardware.
+OF_CONTROLLER = ("os", "middleware", "application", "tasks", "isrs", "labels")
+
+
+def _with_hardware_of(key: str, value: Any) -> Any:
+    """The content of a section, with hardware that its controllers or another file state."""
+    has_other = isinstance(value, dict) and key in value and "hardware" not in value
+    return value | {"hardware": {}} if has_other else value
+
+
+def _stated_of_controller(section: ControllerSection) -> list[str]:
+    hardware = ["hardware"] if section.hardware.model_fields_set else []
+    return hardware + [key for key in OF_CONTROLLER if section.states(key)]
+
 
 #: The draft that editors support.
 _DRAFT = "http://json-schema.org/draft-07/schema#"

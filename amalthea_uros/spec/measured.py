@@ -16,7 +16,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.transports import WIRES, Agent, TransportSection
-from amalthea_uros.spec.values import WHOLE_NUMBER, Name, described
+from amalthea_uros.spec.values import Name, described, VersionedSection
 
 _FILES = KnownFiles(
     kind="profile of measured times",
@@ -37,11 +37,9 @@ _PARTS = {"agent": "the agent", "transport": "the transport"}
 _Part: TypeAlias = Agent | TransportSection
 
 
-class MeasuredProfile(DescriptionSection):
+class MeasuredProfile(VersionedSection):
     """Times of an agent and a transport that somebody measured."""
 
-    amuros: Annotated[Literal[1], WHOLE_NUMBER]
-    """Version of the format."""
     profile: Name
     """Name by which `agent.profile` and `transport.profile` refer to it."""
     title: Name

@@ -19,7 +19,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.section import DescriptionSection
-from amalthea_uros.spec.values import WHOLE_NUMBER, Name
+from amalthea_uros.spec.values import Name, VersionedSection
 
 _PLATFORM_FILES = KnownFiles(
     kind="platform",
@@ -33,11 +33,9 @@ _RTOS_FILES = KnownFiles(
 )
 
 
-class Platform(DescriptionSection):
+class Platform(VersionedSection):
     """A controller that applications refer to by name."""
 
-    amuros: Annotated[Literal[1], WHOLE_NUMBER]
-    """Version of the format."""
     platform: Name
     """Name by which execution times refer to it."""
     hardware: HardwareSection
@@ -52,11 +50,9 @@ class Platform(DescriptionSection):
     """Sources of single figures, by their keys."""
 
 
-class Rtos(DescriptionSection):
+class Rtos(VersionedSection):
     """An operating system that platforms and applications refer to by name."""
 
-    amuros: Annotated[Literal[1], WHOLE_NUMBER]
-    """Version of the format."""
     rtos: Name
     """Name by which `os.rtos` refers to it."""
     title: Name

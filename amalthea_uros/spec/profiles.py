@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.section import DescriptionSection
-from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
+from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing, VersionedSection
 
 
 class WaitingData(DescriptionSection):
@@ -62,11 +62,9 @@ class ThreadData(DescriptionSection):
     """Whether callbacks of messages run in it, instead of in an executor."""
 
 
-class ProfileData(DescriptionSection):
+class ProfileData(VersionedSection):
     """A profile of a middleware: all of its figures, or those that differ from another profile."""
 
-    amuros: Annotated[Literal[1], WHOLE_NUMBER]
-    """Version of the format."""
     profile: Name
     """Its name."""
     base: Name | None = None

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from math import isfinite
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 from amalthea_uros import units
 from amalthea_uros.spec.fields import After, Before, EditorSchema, Limits, Meanings
+from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.type_checks import WrongValueError
 
 #: In characters.
@@ -227,3 +228,10 @@ CanIdentifier: TypeAlias = Annotated[
         examples=[0x120],
     ),
 ]
+
+
+class VersionedSection(DescriptionSection):
+    """The content of a file, with the version of its format."""
+
+    amuros: Annotated[Literal[1], WHOLE_NUMBER]
+    """Version of the format."""

@@ -8,7 +8,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.description import ControllerFile, Description
+from amalthea_uros.spec.description import Description, RobotController
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.notes import Notes
@@ -67,7 +67,7 @@ class Assembly(Brief):
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
     priority_scale: PriorityScale
-    controllers: tuple[ControllerFile, ...] = ()
+    controllers: tuple[RobotController, ...] = ()
 
     @property
     def pools(self) -> tuple[Option, ...]:

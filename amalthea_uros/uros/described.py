@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from amalthea_uros._internal.paths import TEXT, folder_of
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.spec.description import ControllerFile, Description
+from amalthea_uros.spec.description import Description, RobotController
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import Draft, content_draft, description_text, text_draft
 from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
@@ -30,6 +30,7 @@ class Described:
     platform : the name of the hardware in execution times; None if it has none
     core_types : by core
     whole : the description, completed by its platform and its operating system
+    controllers : of a robot, by name
     """
 
     description: Description
@@ -37,6 +38,7 @@ class Described:
     platform: str | None
     core_types: Mapping[str, str]
     whole: Description
+    controllers: Mapping[str, Described] = field(default_factory=dict)
 
 
 def describe_file(file: Path, platform: str | None = None) -> Described:
@@ -78,19 +80,12 @@ def describe_content(content: Mapping[str, Any]) -> Described:
     return _described(content_draft(content, Description), Path())
 
 
-def _described(
-    draft: Draft[Description], folder: Path, platform: str | None = None, *, is_part: bool = False
-) -> Described:
-    """What a draft describes, unless something in it is wrong.
-
-    Parameters
-    ----------
-    is_part : whether it is the file of a controller of a robot
-    """
+def _described(draft: Draft[Description], folder: Path, platform: str | None = None) -> Described:
+    """What a draft describes, unless something in it is wrong."""
     try:
         if draft.section is None:
             raise ReadError(draft.findings)
-        found = _assembled(draft.section, folder, platform, is_part)
+        found = _assembled(draft.section, folder, platform)
     except ReadError as error:
         raise ReadError(draft.with_more(error.findings)) from None
     if draft.findings:
@@ -98,28 +93,8 @@ def _described(
     return found
 
 
-def _robot(description: Description, folder: Path) -> Described:
-    """A robot, whose controllers are described in files of their own."""
-    files = {section.name: _described_controller(section, folder) for section in description.controllers}
-    assembly = assemble_robot(description, {name: each.assembly for name, each in files.items()})
-    types = {core: each.type or "" for core, each in assembly.system.cores.items()}
-    return Described(description, assembly, None, types, description)
-
-
-def _described_controller(section: ControllerFile, folder: Path) -> Described:
-    path = folder / section.file
-    if not path.is_file():
-        advice = "Give a path relative to the directory of this file."
-        message = f"file {str(path)!r} of the controller {section.name!r} not found"
-        raise ReadError([Finding("APP001", Severity.ERROR, message, section.location("file"), advice)])
-    return _described(text_draft(path, description_text(path), Description), folder_of(path), is_part=True)
-
-
-def _assembled(description: Description, folder: Path, platform: str | None, is_part: bool) -> Described:
+def _assembled(description: Description, folder: Path, platform: str | None) -> Described:
     if description.controllers:
-        if is_part:
-            message, place = "the file of a controller describes a robot of several controllers", description.location("controllers")
-            raise ReadError([Finding("APP003", Severity.ERROR, message, place, "Name the files of its controllers instead.")])
         return _robot(description, folder)
     whole, name, findings, assumptions = complete(description, folder, platform)
     try:
@@ -130,6 +105,38 @@ def _assembled(description: Description, folder: Path, platform: str | None, is_
         raise ReadError(findings)
     types = {core: each.type or "" for core, each in assembly.system.cores.items()}
     return Described(description, assembly, name, types, whole)
+
+
+def _robot(description: Description, folder: Path) -> Described:
+    """A robot with several controllers."""
+    controllers = {each.name: _controller(each, folder) for each in description.controllers}
+    assembly = assemble_robot(description, {name: each.assembly for name, each in controllers.items()})
+    types = {core: each.type or "" for core, each in assembly.system.cores.items()}
+    sections = [
+        each if each.file is not None else each.model_copy({key: getattr(controllers[each.name].whole, key) for key in _COMPLETED})
+        for each in description.controllers
+    ]
+    whole = description.model_copy({"controllers": sections})
+    return Described(description, assembly, None, types, whole, controllers)
+
+
+#: What a platform and an operating system add to.
+_COMPLETED = ("hardware", "os", "middleware")
+
+
+def _controller(section: RobotController, folder: Path) -> Described:
+    """A controller of a robot, described in its file or in that of the robot."""
+    if section.file is None:
+        return _assembled(Description.of_controller(section), folder, None)
+    path, place = folder / section.file, section.location("file")
+    if not path.is_file():
+        message, advice = f"app.yaml file {str(path)!r} not found", "Give a path relative to the directory of this file."
+        raise ReadError([Finding("APP001", Severity.ERROR, message, place, advice)])
+    draft = text_draft(path, description_text(path), Description)
+    if draft.section is not None and draft.section.controllers:
+        message = f"{str(path)!r} describes a robot of several controllers, not one of them"
+        raise ReadError([Finding("APP003", Severity.ERROR, message, place, "Name the files of its controllers instead.")])
+    return _described(draft, folder_of(path))
 
 
 def database_frames(description: Description, folder: Path) -> tuple[ForeignFrame, ...]:

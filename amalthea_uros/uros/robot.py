@@ -14,7 +14,7 @@ from amalthea_uros.perf.host import Host, HostTopic
 from amalthea_uros.perf.network import Direction, Purpose, Span, plain_topic
 from amalthea_uros.perf.qualified import joined, qualified
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.description import ControllerFile, Description
+from amalthea_uros.spec.description import Description, RobotController
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.assembly.planned import HIGHER_IS_MORE_URGENT
@@ -69,7 +69,7 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
     )
 
 
-def _check(sections: list[ControllerFile], controllers: Mapping[str, Assembly], notes: Notes) -> None:
+def _check(sections: list[RobotController], controllers: Mapping[str, Assembly], notes: Notes) -> None:
     """Report controllers that share a name, and files that describe a host, too."""
     notes.unique("controller", ((each.name, each.location("name")) for each in sections))
     for section in sections:

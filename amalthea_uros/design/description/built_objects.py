@@ -9,12 +9,14 @@ from functools import cached_property
 
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.change import Change
+from amalthea_uros.design.changes.kinds import KINDS
 from amalthea_uros.design.description.assign import Assignment, Assignments
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of
 from amalthea_uros.design.description.owners import Owner, OwnerKind, StatedTime, executors, owners
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
+from amalthea_uros.perf.qualified import qualified_name
 from amalthea_uros.spec.application import CallbackSection, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
@@ -50,10 +52,14 @@ class BuiltObjects:
     ----------
     values : what is built from the description
     text : of the description
+    place : of a controller of a robot in the text
+    robot : that has the controller
     """
 
     values: Described
     text: str
+    place: Path = ()
+    robot: Described | None = None
 
     @property
     def description(self) -> Description:
@@ -67,6 +73,11 @@ class BuiltObjects:
         ------
         InvalidArgumentError : a description has no key for it.
         """
+        found = self._controller_of(change.object)
+        if found is not None:
+            objects, name = found
+            own = objects.assignments(replace(change, object=name))
+            return [replace(each, target=change.target if each.target == f"{name}.{change.key}" else each.target) for each in own]
         if change.key == "memory":
             return list(self._memory(change))
         holders = [owner for owner in self._owners(change.object) if self._has(owner, change.key)]
@@ -79,6 +90,30 @@ class BuiltObjects:
         except ValueError as error:
             raise InvalidArgumentError(f"{change}: {error}") from None
         return collected.every
+
+    def _controller_of(self, name: str) -> tuple[BuiltObjects, str] | None:
+        """What the controller of an object of a robot is built from, and the name of the object there; None if it is no robot's.
+
+        Raises
+        ------
+        InvalidArgumentError : the controller is described in another file.
+        """
+        if elsewhere := self.elsewhere(name):
+            raise InvalidArgumentError(elsewhere)
+        for index, section in enumerate(self.description.controllers):
+            described, own = self.values.controllers[section.name], name.removeprefix(qualified_name(section.name, ""))
+            objects = BuiltObjects(described, self.text, ("controllers", index), self.values)
+            if own != name and (objects.knows(own) or own in described.assembly.system.labels):
+                return objects, own
+        return None
+
+    def elsewhere(self, name: str) -> str:
+        """Where an object of a robot is described instead; "" if it is here."""
+        for section in self.description.controllers:
+            own = name.removeprefix(qualified_name(section.name, ""))
+            if section.file is not None and own != name and own in _objects(self.values.controllers[section.name]):
+                return f"{name!r} is described in {section.file}; change {own!r} there"
+        return ""
 
     def _add(self, collected: Assignments, owner: Owner, change: Change) -> None:
         if change.key == "execution_time":
@@ -140,7 +175,7 @@ class BuiltObjects:
 
     @cached_property
     def _keys_by_path(self) -> Mapping[Path, DescriptionKey]:
-        return {key.path: key for key in keys_of(self.values.whole, self.text)}
+        return {key.path: key for key in keys_of((self.robot or self.values).whole, self.text)}
 
     def execution_time(self, name: str) -> list[StatedTime]:
         """Where the execution time of an object is stated; several places if several processes execute it.
@@ -149,6 +184,9 @@ class BuiltObjects:
         ------
         InvalidArgumentError : it has none, or its parts are stated one by one.
         """
+        found = self._controller_of(name)
+        if found is not None:
+            return found[0].execution_time(found[1])
         holders = self._owners(name)
         if not holders:
             raise InvalidArgumentError(self._refusal(Change(name, "execution_time", "")))
@@ -165,20 +203,23 @@ class BuiltObjects:
     @cached_property
     def _owners_by_name(self) -> Mapping[str, Sequence[Owner]]:
         by_name = defaultdict[str, list[Owner]](list)
-        for owner in owners(self.description):
+        for owner in self._every_owner():
             by_name[owner.name].append(owner)
         return by_name
 
     @cached_property
     def _owners_by_path(self) -> Mapping[Path, Sequence[Owner]]:
         by_path = defaultdict[Path, list[Owner]](list)
-        for owner in owners(self.description):
+        for owner in self._every_owner():
             by_path[owner.path].append(owner)
         return by_path
 
+    def _every_owner(self) -> Iterator[Owner]:
+        return (replace(each, path=(*self.place, *each.path)) for each in owners(self.description))
+
     def _memory(self, change: Change) -> Iterable[Assignment]:
         """The memory of a label; a buffer that is not listed keeps the size of its messages."""
-        path: Path = ("labels", change.object)
+        path: Path = (*self.place, "labels", change.object)
         sizes = {each.buffer: each.incoming.size for each in self.callbacks if each.incoming is not None}
         if change.object not in self.description.labels and change.object in sizes:
             yield Assignment(change.target, (*path, "size"), data_size_text(sizes[change.object]))
@@ -243,7 +284,8 @@ class BuiltObjects:
     def _serving(self, owner: Owner) -> tuple[Path, ExecutorSection]:
         """The executor that serves a callback, with its place."""
         name = next(each.executor for each in self.callbacks if each.section is owner.section)
-        return next((place, executor) for place, executor in executors(self.description) if executor.name == name)
+        place, executor = next((place, each) for place, each in executors(self.description) if each.name == name)
+        return (*self.place, *place), executor
 
     def _take(self, owner: Owner) -> tuple[Path, ExecutionTimeSection | None, Time]:
         """The fixed part of the cost of a message, and the other parts that a callback's message has."""
@@ -289,6 +331,10 @@ class BuiltObjects:
     def callbacks(self) -> tuple[uros.Callback, ...]:
         """The callbacks, with their intervals and messages."""
         return uros.callbacks_of(self.description.application, self.description.middleware, Notes())
+
+
+def _objects(described: Described) -> set[str]:
+    return {name for kind in KINDS for name in kind.objects(described.assembly.system)}
 
 
 def _constant(parts: Iterable[ExecutionTimeSection | Time | None], name: str) -> Time:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.key_names import shorter_names, with_gaps
 from amalthea_uros.design.description.text_edits import Path, has_list
-from amalthea_uros.spec.description import Description
+from amalthea_uros.perf.qualified import qualified_name
+from amalthea_uros.spec.description import OF_CONTROLLER, Description, RobotController
 from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.section import DescriptionSection, Shorthand
 from amalthea_uros.spec.written import Written, section_class, written
@@ -102,9 +103,10 @@ def keys_of(whole: Description, text: str) -> tuple[DescriptionKey, ...]:
 
 def _keys(holders: tuple[Holder, ...], names: tuple[str, ...], text: str) -> Iterator[DescriptionKey]:
     path, section = holders[-1].path, holders[-1].section
+    elsewhere = _stated_elsewhere(section)
     for field, info in type(section).model_fields.items():
         key = info.alias or field
-        if key == "executor" and getattr(section, "executors", False):
+        if key in elsewhere:
             continue
         yield DescriptionKey(path=(*path, key), names=(*names, key), holders=holders, field=field)
         yield from _inner(holders, (*names, key), (*path, key), field, text)
@@ -114,24 +116,42 @@ def _inner(holders: tuple[Holder, ...], names: tuple[str, ...], path: Path, fiel
     value = getattr(holders[-1].section, field)
     if isinstance(value, DescriptionSection):
         name = getattr(value, "name", None)
-        own = (*names, name) if isinstance(name, str) else names
+        own = (*names, _of_part(name, holders)) if isinstance(name, str) else names
         yield from _keys((*holders, Holder(path=path, section=value)), own, text)
     elif isinstance(value, Mapping):
         for name, item in value.items():
             if isinstance(item, DescriptionSection):
-                yield from _keys((*holders, Holder(path=(*path, name), section=item)), (*names, name), text)
+                own = _of_part(name, holders)
+                yield from _keys((*holders, Holder(path=(*path, name), section=item)), (*names, own), text)
             else:
                 yield DescriptionKey(path=(*path, name), names=(*names, name), holders=holders, field=field, item=name)
     elif isinstance(value, list) and has_list(text, path, len(value)):
         for index, item in enumerate(value):
             if isinstance(item, DescriptionSection):
                 holder = Holder(path=(*path, index), section=item)
-                yield from _keys((*holders, holder), (*names, _name_of(item, index)), text)
+                yield from _keys((*holders, holder), (*names, _name_of(item, index, holders)), text)
 
 
-def _name_of(item: DescriptionSection, index: int) -> str:
-    names = (getattr(item, key, None) for key in _IDENTIFIERS)
-    return next((name for name in names if isinstance(name, str)), str(index))
+def _name_of(item: DescriptionSection, index: int, holders: Sequence[Holder]) -> str:
+    names = ((key, getattr(item, key, None)) for key in _IDENTIFIERS)
+    key, name = next(((key, name) for key, name in names if isinstance(name, str)), ("", str(index)))
+    return _of_part(name, holders) if key == "name" else name
+
+
+def _of_part(name: str, holders: Sequence[Holder]) -> str:
+    """The name of an object in the system; one of several controllers has the name of that before its own."""
+    parts = (each.section.name for each in holders if isinstance(each.section, RobotController))
+    return next((qualified_name(part, name) for part in parts), name)
+
+
+def _stated_elsewhere(section: DescriptionSection) -> Collection[str]:
+    """The keys of a section that it cannot have, because it says where else their values are stated."""
+    if getattr(section, "executors", False):
+        return ("executor",)
+    is_robot = isinstance(section, Description) and bool(section.controllers)
+    if is_robot or (isinstance(section, RobotController) and section.file is not None):
+        return ("hardware", *OF_CONTROLLER)
+    return ()
 
 
 def matching(target: str, keys: Sequence[DescriptionKey]) -> list[DescriptionKey]:

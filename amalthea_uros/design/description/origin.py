@@ -151,8 +151,11 @@ class DescriptionOrigin:
 
     def _of_built_object(self, change: Change) -> Sequence[Assignment]:
         """The edits for a value of an object that is built, such as the runnable of a task."""
+        objects = BuiltObjects(describe_text(self.text, self.path), self.text)
+        if elsewhere := objects.elsewhere(change.object):
+            raise InvalidArgumentError(f"{change}: {elsewhere}")
         try:
-            return BuiltObjects(describe_text(self.text, self.path), self.text).assignments(change)
+            return objects.assignments(change)
         except InvalidArgumentError as error:
             raise refusal(change, self.keys, self.present.system, error) from None
 

@@ -48,6 +48,8 @@ def refusal(
         return InvalidArgumentError(f"{unstated}; did you mean {meant!r}?")
     if own:
         return InvalidArgumentError(f"{unstated}; {known}")
+    if change.object in _objects(system):
+        return InvalidArgumentError(f"{unstated}; {change.object!r} follows from other values of it")
     names = dict.fromkeys((*(name for key in keys for name in key.names[:-1]), *_objects(system)))
     holders = [short_name(key, keys) for key in keys if key.path[-1] == change.key]
     advice = did_you_mean(change.object, names) or (f"{change.key!r} is a key of {listed(holders)}" if holders else "")
