@@ -27,7 +27,7 @@ PAGES = {
     "os": ("Keys of the operating system", ("os",)),
     "middleware": ("Keys of the middleware", ("middleware",)),
     "application": ("Keys of the micro-ROS application", ("application",)),
-    "host": ("Keys of the host with ROS 2", ("host",)),
+    "host": ("Keys of several controllers, and of the host with ROS 2", ("controllers", "host")),
     "tasks": ("Keys of tasks, ISRs and labels", ("tasks", "isrs", "labels")),
     "chains": ("Keys of chains and requirements", ("chains", "requirements")),
 }
@@ -60,7 +60,10 @@ def write(file: Path, head: str, lines: Iterator[str]) -> None:
 
 def pages_of_sections(schema: dict[str, Any]) -> dict[str, str]:
     """The page of each section: that of the only part which has it, or the one of what several parts have."""
-    parts = {key: closure({key: value}, schema) for key, value in schema["properties"].items()}
+    properties = schema["properties"]
+    parts = {key: closure({key: value}, schema) for key, value in properties.items()}
+    # A controller of a robot has the sections of a whole description.
+    parts["controllers"] = references(properties["controllers"])
     return {
         name: next((page for page, (_, keys) in PAGES.items() if users <= set(keys)), SHARED)
         for name in schema["definitions"]

@@ -147,6 +147,7 @@ def build(
 )
 @click.option("--check", "meta", type=INPUT, metavar="COLCON.META", help="Write nothing; compare this file with APP.YAML.")
 @_platform_option
+@click.option("--controller", metavar="NAME", help="Which one, of a robot with several controllers.")
 @click.option("--code", is_flag=True, help="Write the C of entities, executors, loops and threads, too.")
 @click.option("--reconnect", is_flag=True, help="Let this code create everything anew when the agent comes back.")
 @click.option("--stamps", is_flag=True, help="Let this code send a CAN frame where a callback starts and where it ends.")
@@ -157,6 +158,7 @@ def generate(
     folder: Path | None,
     meta: Path | None,
     platform: str | None,
+    controller: str | None,
     code: bool,
     reconnect: bool,
     stamps: bool,
@@ -179,10 +181,12 @@ def generate(
     if folder is not None and str(folder) == "-":
         raise click.UsageError("-o needs a folder, as several files are written")
     if meta is not None:
-        check = service.check_colcon_meta(description, meta, platform)
+        check = service.check_colcon_meta(description, meta, platform, controller=controller)
         show_result(check, outputs)
         sys.exit(0 if check.is_fine else 1)
-    result = service.generate(description, folder, platform, force, code=code, reconnect=reconnect, stamps=stamps)
+    result = service.generate(
+        description, folder, platform, force, controller=controller, code=code, reconnect=reconnect, stamps=stamps
+    )
     show_result(result, outputs)
 
 

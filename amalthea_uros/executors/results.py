@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from fractions import Fraction
+from typing import TypeVar
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.records import dataclass, field
@@ -14,6 +15,8 @@ from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time, time_text
+
+V = TypeVar("V")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,12 +170,16 @@ class ExecutorOccurrences:
     overrunning: frozenset[str] = frozenset()
 
 
-def together(occurrences: Iterable[ExecutorOccurrences]) -> ExecutorOccurrences:
+def merged_occurrences(parts: Iterable[ExecutorOccurrences]) -> ExecutorOccurrences:
     """The occurrences of the executors of all controllers."""
-    every = list(occurrences)
+    every = list(parts)
     return ExecutorOccurrences(
-        sent={name: each for found in every for name, each in found.sent.items()},
-        lateness={name: each for found in every for name, each in found.lateness.items()},
-        again={name: each for found in every for name, each in found.again.items()},
-        overrunning=frozenset(name for found in every for name in found.overrunning),
+        sent=_merged(each.sent for each in every),
+        lateness=_merged(each.lateness for each in every),
+        again=_merged(each.again for each in every),
+        overrunning=frozenset(name for each in every for name in each.overrunning),
     )
+
+
+def _merged(mappings: Iterable[Mapping[str, V]]) -> dict[str, V]:
+    return {name: value for each in mappings for name, value in each.items()}

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import is_dataclass
 from enum import Enum
-from functools import cache
 from typing import Any, TypeVar
 
 from amalthea_uros._internal.records import fields, replace
 from amalthea_uros.perf.hardware import Feature
-from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.os import Parameter
 from amalthea_uros.perf.system import System
 
 T = TypeVar("T")
-M = TypeVar("M", bound=Brief)
 
 #: The models of a system.
 _MODELS = ("hardware", "os", "stimuli", "software", "mapping", "events", "constraints", "network")
@@ -28,7 +25,7 @@ _NO_NAMES = frozenset(
         *("kind", "reason", "description", "origin"),
     }
 )
-#: What belongs to the definition of a type or of a scheduling policy, whose words are the same everywhere.
+#: Parts of the definition of a type or of a scheduling policy, whose words are the same everywhere.
 _WORDS = (Feature, Parameter)
 
 
@@ -39,22 +36,19 @@ def qualified_name(part: str, name: str) -> str:
 
 def qualified(value: T, part: str) -> T:
     """A system, or something of it, with the name of the part before the names of objects."""
-    found: Any = value
-    if isinstance(found, (Enum, *_WORDS)):
-        return value
-    if isinstance(found, str):
-        return qualified_name(part, found) if found else found  # type: ignore[return-value]
-    if isinstance(found, tuple | frozenset):
-        return type(found)(qualified(each, part) for each in found)
-    if not is_dataclass(found):
-        return value
-    return replace(found, **{name: qualified(getattr(found, name), part) for name in _named(type(found))})  # type: ignore[no-any-return]
+    new: Any = value
+    if isinstance(new, str) and not isinstance(new, Enum):
+        new = qualified_name(part, new) if new else new
+    elif isinstance(new, tuple | frozenset):
+        new = type(new)(qualified(each, part) for each in new)
+    elif is_dataclass(new) and not isinstance(new, _WORDS):
+        new = _renamed(new, part)
+    return new  # type: ignore[no-any-return]
 
 
-@cache
-def _named(kind: type) -> tuple[str, ...]:
-    """The fields of a class that can contain names."""
-    return tuple(each.name for each in fields(kind) if each.init and each.name not in _NO_NAMES)
+def _renamed(item: Any, part: str) -> Any:
+    names = (each.name for each in fields(item) if each.init and each.name not in _NO_NAMES)
+    return replace(item, **{name: qualified(getattr(item, name), part) for name in names})
 
 
 def joined(parts: Mapping[str, System]) -> System:
@@ -66,7 +60,7 @@ def joined(parts: Mapping[str, System]) -> System:
     agents = dict.fromkeys(each.network.agent for each in systems if each.network.wires)
     whole = System(
         executors=tuple(executor for each in systems for executor in each.executors),
-        **{kind: _together([getattr(each, kind) for each in systems]) for kind in _MODELS},
+        **{kind: _merged([getattr(each, kind) for each in systems]) for kind in _MODELS},
     )
     return replace(whole, network=replace(whole.network, agent=" and ".join(agents) or whole.network.agent))
 
@@ -79,7 +73,7 @@ def _with_ends(system: System, part: str) -> System:
     return replace(system, network=replace(network, wires=wires, assumptions=assumptions))
 
 
-def _together(models: Sequence[M]) -> M:
+def _merged(models: Sequence[Any]) -> Any:
     """Several models of a kind as one: all objects of all of them."""
     lists = (each.name for each in fields(models[0]) if isinstance(getattr(models[0], each.name), tuple))
     return replace(models[0], **{name: tuple(item for each in models for item in getattr(each, name)) for name in lists})

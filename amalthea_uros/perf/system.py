@@ -197,7 +197,9 @@ class System:
         names = {wire.name for wire in wires}
         # The agent can bring what other clients publish.
         published = Direction.TO_AGENT, Purpose.DATA
-        sent = tuple(each for each in self.network.transmissions if each.wire in names or (each.direction, each.purpose) == published)
+        sent = tuple(
+            each for each in self.network.transmissions if each.wire in names or (each.direction, each.purpose) == published
+        )
         return replace(
             self,
             executors=tuple(each for each in self.executors if each.name in executors),

@@ -7,29 +7,23 @@ from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_file, read_text
 from amalthea_uros._internal.limits import SETTINGS_SIZE
-from amalthea_uros._internal.paths import StrPath, folder_of
+from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.services.build import describe
 from amalthea_uros.services.files import refuse, save_new
+from amalthea_uros.services.generated_controller import SOLVED, described_controller
 from amalthea_uros.services.waiting_messages import waiting_messages, with_analysed_storage
-from amalthea_uros.spec.platforms import complete
-from amalthea_uros.spec.read import read_description
-from amalthea_uros.uros.assemble import Assembly, assemble
+from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.colcon_meta import parse_meta
 from amalthea_uros.uros.generated_files import MARK, CodeWishes, code_findings, generated_memory, generated_storage, texts_of
 from amalthea_uros.uros.generated_options import check_meta
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.memory_findings import exceeded_memory
-from amalthea_uros.uros.middleware.options import OptionRole
-from amalthea_uros.uros.profiles import profile_of
 
-#: Findings about sizes, which the files set.
-_SOLVED = ("UR120", "UR127")
 #: Asked again for the sizes in the files.
 _MEMORY = "UR129"
 
@@ -57,7 +51,7 @@ class GenerateResult(Brief, Shown):
     @property
     def findings(self) -> tuple[Finding, ...]:
         """Warnings and notes about the description, except about sizes that the files set, and those that comments in it accept."""
-        kept = [finding for finding in self.assembly.findings if finding.rule not in (*_SOLVED, _MEMORY)]
+        kept = [finding for finding in self.assembly.findings if finding.rule not in (*SOLVED, _MEMORY)]
         kept += self.omissions
         exceeded = exceeded_memory(self.memory, generated_storage(self.assembly), self.assembly.description.hardware)
         return unsuppressed(kept if exceeded is None else [*kept, exceeded])
@@ -83,6 +77,7 @@ def generate(
     platform: str | None = None,
     force: bool = False,
     *,
+    controller: str | None = None,
     code: bool = False,
     reconnect: bool = False,
     stamps: bool = False,
@@ -94,6 +89,7 @@ def generate(
     folder : where they are written; it is created if it does not exist; None: nowhere
     platform : replaces the platform that the file names
     force : replace files that somebody else wrote
+    controller : whose files, of a robot with several ones
     code : write the C of entities, executors, loops and threads, too, with definitions of types that are not stated
     reconnect : with `code`, a loop that creates everything anew when the agent comes back
     stamps : with `code`, a CAN frame where each callback starts and ends, and the markers with which `measure` reads them
@@ -103,7 +99,7 @@ def generate(
     ReadError : the description cannot be read, something in it is wrong, or it has no micro-ROS application.
     WriteError : a file cannot be written, or would be replaced.
     """
-    assembly = _described(path, platform)
+    assembly = described_controller(Path(path), platform, controller)
     if not assembly.description.application.nodes:
         message, advice = "no micro-ROS application: nothing to generate", "Add nodes under 'application'."
         raise ReadError([Finding("GEN009", Severity.ERROR, message, Location(Path(path)), advice)])
@@ -128,7 +124,7 @@ def generate(
     return result
 
 
-def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None) -> MetaCheck:
+def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None, *, controller: str | None = None) -> MetaCheck:
     """What is wrong with a `colcon.meta` for an application.
 
     Parameters
@@ -136,12 +132,13 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
     path : the `app.yaml`
     meta : the file to check; comments and trailing commas are allowed
     platform : replaces the platform that the description names
+    controller : whose options they are, of a robot with several controllers
 
     Raises
     ------
     ReadError : one of the files cannot be read.
     """
-    assembly = _described(path, platform)
+    assembly = described_controller(Path(path), platform, controller)
     file = Path(meta)
     try:
         text = read_text(file, SETTINGS_SIZE)
@@ -150,21 +147,6 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None)
     description, file_options = assembly.description, parse_meta(file, text)
     findings = check_meta(description.application, assembly.profile, file_options, assembly.memory, waiting_messages(assembly))
     return MetaCheck(description=Path(path), path=file, findings=findings)
-
-
-def _described(path: StrPath, platform: str | None) -> Assembly:
-    """The system of a description; pools that are too small are no obstacle, as the files are to set others."""
-    try:
-        return describe(path, platform)
-    except ReadError as error:
-        if any(finding.severity is Severity.ERROR and finding.rule not in _SOLVED for finding in error.findings):
-            raise
-    whole, name, *_ = complete(read_description(Path(path)), folder_of(Path(path)), platform)
-    middleware = whole.middleware
-    sizes = [row.name for row in profile_of(middleware).option_table.values() if row.role is not OptionRole.SETTING]
-    limits = middleware.limits.model_copy(update=dict.fromkeys(name for name in sizes if middleware.limits.states(name)))
-    whole = whole.model_copy(update={"middleware": middleware.model_copy(update={"limits": limits})})
-    return assemble(whole, whole.hardware, name)
 
 
 def _is_foreign(path: Path) -> bool:

@@ -69,9 +69,8 @@ class RobotController(ControllerSection):
 class Description(ControllerSection, VersionedSection):
     """A micro-ROS application on a controller, and the other software that runs there; or a robot with several controllers."""
 
-    controllers: list[RobotController] = entry(default_factory=list)
-    """The controllers of a robot that has several ones, instead of `hardware` and what runs on it; the name of each is put before the
-    names of its tasks, callbacks and variables, e.g. `drive_Motor`."""
+    controllers: list[RobotController] = entry(default_factory=list, min_length=1)
+    """The controllers of a robot that has several ones; the name of each comes before those of its objects, e.g. `drive_Motor`."""
     host: HostSection | None = None
     """The host with ROS 2 at the other end of the transport."""
 
@@ -95,9 +94,9 @@ class Description(ControllerSection, VersionedSection):
     def of_controller(cls, section: RobotController) -> Self:
         """The description of a controller of a robot as one of its own."""
         values = {name: getattr(section, name) for name in ControllerSection.model_fields}
-        found = cls.model_construct(amuros=1, **values)
-        found._where, found._stated = section._where, section._stated
-        return found
+        description = cls.model_construct(amuros=1, **values)
+        description._where, description._stated = section._where, section._stated
+        return description
 
 
 #: What only one controller has, besides its hardware.

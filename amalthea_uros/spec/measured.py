@@ -16,7 +16,7 @@ from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.read import read_section
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.transports import WIRES, Agent, TransportSection
-from amalthea_uros.spec.values import Name, described, VersionedSection
+from amalthea_uros.spec.values import Name, VersionedSection, described
 
 _FILES = KnownFiles(
     kind="profile of measured times",

@@ -34,11 +34,6 @@ _SYNONYMS = {
     "cycle_time": ("period",),
 }
 
-#: Keys that a description has no place for, with the alternative.
-_REFUSED = {
-    "controllers": "A description has one controller. Write a file for each of them, each with the whole host, and state what "
-    "the other controllers send as 'topics' of the host, with 'rate' and 'jitter'.",
-}
 
 _LIST = "Write [a, b], or one item per line after '- '."
 _MAPPING = "Write key: value pairs."
@@ -206,8 +201,6 @@ def _advice(mistake: Mistake, kind: type[DescriptionSection]) -> str:
     """The help line for an unknown key."""
     if _AFTER_COMMA.fullmatch(mistake.key):
         return "A comma separates keys; write decimals with a point, e.g. 1.5 ms."
-    if mistake.key in _REFUSED:
-        return _REFUSED[mistake.key]
     if certain := intended_key(mistake, kind, CERTAIN):
         return f"Did you mean {certain!r}?"
     elsewhere = nearest_places(mistake.key, mistake.details["loc"][:-1], kind)

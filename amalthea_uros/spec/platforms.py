@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import NamedTuple
 
 from amalthea_uros._internal.resources import PLATFORMS, RTOSES, known_platforms, known_rtoses
 from amalthea_uros.diagnostics import Finding, Severity
@@ -18,7 +18,6 @@ from amalthea_uros.spec.merging import merged, merged_middleware
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.spec.os import OsSection
 from amalthea_uros.spec.read import read_section
-from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import Name, VersionedSection
 
 _PLATFORM_FILES = KnownFiles(

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
-
 from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.section import DescriptionSection
-from amalthea_uros.spec.values import Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing, VersionedSection
+from amalthea_uros.spec.values import (
+    Count,
+    CountOrNone,
+    Duration,
+    Name,
+    Offset,
+    Priority,
+    Size,
+    SizeOrNothing,
+    VersionedSection,
+)
 
 
 class WaitingData(DescriptionSection):

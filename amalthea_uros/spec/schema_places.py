@@ -71,6 +71,7 @@ def words_at(path: Path, kind: type[DescriptionSection]) -> list[str]:
 
 #: Sections inside of each other, at most; the schema has no deeper ones that users write.
 _DEEPEST = 6
+_PARTS = ("controllers",)
 
 
 @cache
@@ -98,7 +99,9 @@ def nearest_places(key: str, path: Path, kind: type[DescriptionSection]) -> list
     A key that is only in other parts of the description must be unique to say anything.
     """
     here = tuple(part for part in path if isinstance(part, str))
-    others = [each for each in places_of_keys(kind).get(key, ()) if each != here]
+    # A controller of a robot has the keys of a whole description.
+    is_inside = here[:1] == _PARTS
+    others = [each for each in places_of_keys(kind).get(key, ()) if each != here and (is_inside or each[:1] != _PARTS)]
     if not others:
         return []
     most = max(_common(each, here) for each in others)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from copy import copy
 from functools import cached_property
 from typing import TypeVar
 
@@ -140,12 +139,6 @@ class TimingContext:
     def touching(self) -> Touching:
         """What processes can touch if something about them is unknown."""
         return Touching(self.system, self.scheduled, self.dataflow)
-
-    def seen_by(self, client: System) -> TimingContext:
-        """The timing context as a client of the middleware sees it, with the executors and wires of that."""
-        found = copy(self)
-        found.system = client
-        return found
 
     def time_base(self, process: str) -> int:
         """Time units per picosecond on the core of a process."""

@@ -211,7 +211,7 @@ class Topics:
 
 
 class ChainMembers(NamedTuple):
-    """What the path of a chain can contain, besides callbacks of the host.
+    """The members that the path of a chain can have, besides callbacks of the host.
 
     Attributes
     ----------
@@ -240,9 +240,9 @@ def members_together(parts: Iterable[ChainMembers], network: Network) -> ChainMe
     senders: dict[str, list[str]] = {}
     for part in parts:
         elements |= part.elements
-        for found, own in ((receivers, part.topics.receivers), (senders, part.topics.senders)):
+        for every, own in ((receivers, part.topics.receivers), (senders, part.topics.senders)):
             for topic, callbacks in own.items():
-                found.setdefault(topic, []).extend(callbacks)
+                every.setdefault(topic, []).extend(callbacks)
     return ChainMembers(elements, Topics(receivers, senders, network))
 
 

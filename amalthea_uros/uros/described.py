@@ -85,7 +85,7 @@ def _described(draft: Draft[Description], folder: Path, platform: str | None = N
     try:
         if draft.section is None:
             raise ReadError(draft.findings)
-        found = _assembled(draft.section, folder, platform)
+        found = described_section(draft.section, folder, platform)
     except ReadError as error:
         raise ReadError(draft.with_more(error.findings)) from None
     if draft.findings:
@@ -93,7 +93,24 @@ def _described(draft: Draft[Description], folder: Path, platform: str | None = N
     return found
 
 
-def _assembled(description: Description, folder: Path, platform: str | None) -> Described:
+def described_section(description: Description, folder: Path, platform: str | None = None) -> Described:
+    """The meaning of a description that was read before.
+
+    Parameters
+    ----------
+    folder : what the files that it names are relative to
+    platform : replaces the platform that it names
+
+    Raises
+    ------
+    ReadError : something in it is wrong; carries a finding for each mistake.
+    """
+    if description.controllers and platform is not None:
+        message, advice = (
+            "the robot has several controllers, each with a platform of its own",
+            "Change 'hardware' of one of them.",
+        )
+        raise ReadError([Finding("APP003", Severity.ERROR, message, description.location("controllers"), advice)])
     if description.controllers:
         return _robot(description, folder)
     whole, name, findings, assumptions = complete(description, folder, platform)
@@ -113,21 +130,23 @@ def _robot(description: Description, folder: Path) -> Described:
     assembly = assemble_robot(description, {name: each.assembly for name, each in controllers.items()})
     types = {core: each.type or "" for core, each in assembly.system.cores.items()}
     sections = [
-        each if each.file is not None else each.model_copy({key: getattr(controllers[each.name].whole, key) for key in _COMPLETED})
+        each
+        if each.file is not None
+        else each.model_copy({key: getattr(controllers[each.name].whole, key) for key in _COMPLETED})
         for each in description.controllers
     ]
     whole = description.model_copy({"controllers": sections})
     return Described(description, assembly, None, types, whole, controllers)
 
 
-#: What a platform and an operating system add to.
+#: The sections that a platform and an operating system complete.
 _COMPLETED = ("hardware", "os", "middleware")
 
 
 def _controller(section: RobotController, folder: Path) -> Described:
     """A controller of a robot, described in its file or in that of the robot."""
     if section.file is None:
-        return _assembled(Description.of_controller(section), folder, None)
+        return described_section(Description.of_controller(section), folder)
     path, place = folder / section.file, section.location("file")
     if not path.is_file():
         message, advice = f"app.yaml file {str(path)!r} not found", "Give a path relative to the directory of this file."

@@ -37,18 +37,18 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
     ------
     ReadError : the description is contradictory; carries all findings.
     """
-    notes = Notes()
-    _check(description.controllers, controllers, notes)
-    profile = stated_profile(description.middleware, notes)
-    if profile is None or notes.has_errors:
-        raise notes.refusal()
+    problems = Notes()
+    _check(description.controllers, controllers, problems)
+    profile = stated_profile(description.middleware, problems)
+    if profile is None or problems.has_errors:
+        raise problems.refusal()
     system = joined({name: each.system for name, each in controllers.items()})
-    _check_names(system, description, notes)
-    system = replace(system, host=_host(description, controllers, system, notes))
+    _check_names(system, description, problems)
+    system = replace(system, host=_host(description, controllers, system, problems))
     members = members_together((each.members.of_part(name) for name, each in controllers.items()), system.network)
-    system = with_demands(system, members, description, notes)
-    if notes.has_errors:
-        raise notes.refusal()
+    system = with_demands(system, members, description, problems)
+    if problems.has_errors:
+        raise problems.refusal()
     choices = (qualified(choice, name) for name, each in controllers.items() for choice in each.choices)
     return Assembly(
         description=description,
@@ -62,37 +62,39 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
         initialisation=None,
         options=(),
         memory=MemoryDemand(uses=(), stacks=separate_stacks(()), other_stacks=0, ram=None, budget=None),
-        findings=tuple(dict.fromkeys((*(found for each in controllers.values() for found in each.findings), *notes.findings))),
+        findings=tuple(
+            dict.fromkeys((*(finding for each in controllers.values() for finding in each.findings), *problems.findings))
+        ),
         task_periods=(),
         priority_scale=HIGHER_IS_MORE_URGENT,
         controllers=tuple(description.controllers),
     )
 
 
-def _check(sections: list[RobotController], controllers: Mapping[str, Assembly], notes: Notes) -> None:
+def _check(sections: list[RobotController], controllers: Mapping[str, Assembly], problems: Notes) -> None:
     """Report controllers that share a name, and files that describe a host, too."""
-    notes.unique("controller", ((each.name, each.location("name")) for each in sections))
+    problems.unique("controller", ((each.name, each.location("name")) for each in sections))
     for section in sections:
         described = controllers[section.name].description
         if described.host is not None:
             message = f"the file of the controller {section.name!r} has a 'host', which is that of the robot"
-            notes.error("APP003", message, described.location("host"), "Move 'host' to the file of the robot.")
+            problems.error("APP003", message, described.location("host"), "Move 'host' to the file of the robot.")
 
 
-def _check_names(system: System, description: Description, notes: Notes) -> None:
+def _check_names(system: System, description: Description, problems: Notes) -> None:
     """Report names that are the same with the names of controllers before them, e.g. `arm_left` `Motor` and `arm` `left_Motor`."""
     software = system.software
     every = (*software.tasks, *software.isrs, *software.runnables, *software.labels, *system.events.chains)
     for (kind, name), count in Counter((type(each).__name__, each.name) for each in every).items():
         if count > 1:
             message = f"two controllers have a {kind.lower()} {name!r}, with the name of the controller before its own name"
-            notes.error("APP002", message, description.location("controllers"), "Rename one of the controllers.")
+            problems.error("APP002", message, description.location("controllers"), "Rename one of the controllers.")
 
 
-def _host(description: Description, controllers: Mapping[str, Assembly], system: System, notes: Notes) -> Host:
+def _host(description: Description, controllers: Mapping[str, Assembly], system: System, problems: Notes) -> Host:
     """The host, with the topics that only controllers send each other."""
     published = {topic for each in controllers.values() for topic in topics_of_nodes(each.description.application)}
-    host = host_of(description.host, published, notes)
+    host = host_of(description.host, published, problems)
     known = {topic.name for topic in host.topics}
     stated = description.host.latency if description.host is not None else None
     latency = Span() if stated is None else Span(least=stated.min, most=stated.max)

@@ -47,7 +47,9 @@ class AssembledSystem(NamedTuple):
     members: ChainMembers
 
 
-def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None) -> AssembledSystem:
+def assembled_system(
+    context: AssemblyContext, callbacks: Sequence[Callback], network: PlannedNetwork | None
+) -> AssembledSystem:
     """The system of all that has been added to the context."""
     description, notes = context.description, context.notes
     _check_misspelled_labels(context)
@@ -64,12 +66,12 @@ def assembled_system(context: AssemblyContext, callbacks: Sequence[Callback], ne
     return AssembledSystem(replace(system, constraints=replace(system.constraints, requirements=demanded)), members)
 
 
-def with_demands(system: System, members: ChainMembers, description: Description, notes: Notes) -> System:
+def with_demands(system: System, members: ChainMembers, description: Description, problems: Notes) -> System:
     """A system with the chains and requirements of a description, besides those that it has."""
     known = {each.name: each for each in system.events.events}
-    chains = ChainBuilder(members.elements, members.topics, Dataflow(system), notes, events=known)
+    chains = ChainBuilder(members.elements, members.topics, Dataflow(system), problems, events=known)
     limits = chains.add_all(description.chains)
-    demanded = tuple(_requirements(description.requirements, members.elements, notes))
+    demanded = tuple(_requirements(description.requirements, members.elements, problems))
     constraints = system.constraints
     return replace(
         system,

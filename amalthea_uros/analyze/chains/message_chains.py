@@ -67,13 +67,13 @@ def evaluate_executors_and_messages(
     """
     jitter: dict[str, Time | None] = {}
     sending: dict[str, Span] = {}
-    found: list[ExecutorResult] = []
+    results: list[ExecutorResult] = []
     for client in solution.clients:
         own_jitter, own_sending = arrival_jitter(client), sending_times(client)
-        found += evaluate_executors(client, sending=own_sending, extra_jitter=own_jitter)
+        results += evaluate_executors(client, sending=own_sending, extra_jitter=own_jitter)
         jitter |= own_jitter
         sending |= own_sending
-    executors, host, system = Results(found), evaluate_host(solution), solution.context.system
+    executors, host, system = Results(results), evaluate_host(solution), solution.context.system
     evaluator = MessageChains(
         ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending, HostHops(host, solution)
     )

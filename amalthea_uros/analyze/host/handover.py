@@ -1,10 +1,9 @@
 """The messages that the host and other controllers send to a controller: how often they really come, instead of what is stated.
 
 A subscription on a controller states an interval and a jitter. If callbacks of the host or of another controller publish its topic,
-both follow from these: the controller is analysed with the interval of the publisher, and with the greater jitter. What the controller
-sends depends on that in turn, so that all sides are analysed until nothing changes (K. Richter 2005). If no interval and jitter describe
-what is sent, or the description contradicts itself, it is unknown how often the messages come, and so is everything that depends on
-them.
+both follow from these: the controller is analysed with the interval of the publisher, and with the greater jitter. What it sends
+depends on that in turn, so that all sides are analysed until nothing changes (K. Richter 2005). If no interval and jitter describe what
+is sent, or the description contradicts itself, it is unknown how often the messages come, and so is everything that depends on them.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.distributions import Uniform
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
-from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, aggregated
@@ -65,7 +64,9 @@ def _checked(described: System, stated: System, solution: Solution) -> Solution:
         for handle, after in changed:
             if handle.transmission == transmission.name and handle.interval != after.interval:
                 sender = _sender(transmission, releases)
-                unknown.setdefault(transmission, f"{sender} does not send {topic!r} in the interval that {handle.name!r} states")
+                unknown.setdefault(
+                    transmission, f"{sender} does not send {topic!r} in the interval that {handle.name!r} states"
+                )
     system = solution.context.system
     for transmission, reason in unknown.items():
         system = with_unknown_times(system, transmission, reason, described)
@@ -156,7 +157,7 @@ def _spread(span: Span, reason: str) -> Time:
 
 
 def _with_real_times(system: System, transmission: Transmission, releases: HostReleases) -> System:
-    """The system with the interval and at least the jitter of the publisher; the same object if it has them already or they are unknown."""
+    """The system with the interval and at least the jitter of the publisher; the same object if it has them or they are unknown."""
     try:
         if not violated(transmission, releases):
             return system
@@ -167,12 +168,15 @@ def _with_real_times(system: System, transmission: Transmission, releases: HostR
     handles = [handle for each in system.executors for handle in each.handles if handle.transmission == transmission.name]
     arriving = stimuli[0] if len(stimuli) == 1 else None
     # The task of a callback outside executors has a period that was chosen for what is stated.
-    if not handles or not isinstance(arriving, Periodic) or not isinstance(real, PeriodicEvents):
+    if not handles or not isinstance(arriving, Periodic | RelativePeriodic) or not isinstance(real, PeriodicEvents):
         return system
     jitter = max(real.jitter, *(handle.jitter for handle in handles))
     changed = {handle: replace(handle, interval=real.period, jitter=jitter) for handle in handles}
     late = Uniform(lower=0, upper=jitter + agent)
-    stimulus = replace(arriving, period=real.period, jitter=late, min_distance=None)
+    if isinstance(arriving, RelativePeriodic):  # what is stated without any jitter
+        stimulus = Periodic(name=arriving.name, period=real.period, jitter=late, origin=arriving.origin)
+    else:
+        stimulus = replace(arriving, period=real.period, jitter=late, min_distance=None)
     executors = tuple(
         replace(each, handles=tuple(changed.get(handle, handle) for handle in each.handles)) for each in system.executors
     )

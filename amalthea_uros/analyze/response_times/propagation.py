@@ -18,7 +18,7 @@ from amalthea_uros.analyze.response_times.several_cores import responses_on_seve
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.waits import bound_waits, reasons_besides_waits, warn_of_unknown_waits
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.executors.results import ExecutorOccurrences, together
+from amalthea_uros.executors.results import ExecutorOccurrences, merged_occurrences
 from amalthea_uros.executors.semantics.loops import sleep_of, why_deferred, why_dense, workload
 from amalthea_uros.perf.activities import Trigger
 from amalthea_uros.perf.executors import Executor
@@ -97,10 +97,10 @@ def _executor_occurrences(solution: Solution, responses: Mapping[str, Response] 
     from amalthea_uros.executors.bounds.occurrences import least_occurrences, occurrences
 
     if responses is None:
-        return together(least_occurrences(client.context) for client in solution.clients)
+        return merged_occurrences(least_occurrences(client.context) for client in solution.clients)
     # What is derived from a solution is kept in it, so that each step needs its own.
     solution = replace(solution, responses=dict(responses), schedules={}, _threads={})
-    return together(map(occurrences, solution.clients))
+    return merged_occurrences(map(occurrences, solution.clients))
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from fractions import Fraction
 from functools import cached_property
 from operator import attrgetter
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.load import certain_loads, suppressible
 from amalthea_uros.timing.basics.time_base import min_time
 from amalthea_uros.timing.context import TimingContext
@@ -50,8 +52,8 @@ class Solution:
     @property
     def clients(self) -> Sequence[Solution]:
         """The solution as each client of the middleware sees it; itself if there is one."""
-        seen = self.context.system.clients
-        return (self,) if len(seen) == 1 else [replace(self, context=self.context.seen_by(each)) for each in seen]
+        systems = self.context.system.clients
+        return (self,) if len(systems) == 1 else [replace(self, context=_with_system(self.context, each)) for each in systems]
 
     def schedule(self, core: str, with_slices: bool = False) -> CoreSchedule | None:
         """The schedules of a core; None if they are unknown or too long.
@@ -199,3 +201,10 @@ class Solution:
         """Best-case execution time of a process, in picoseconds; 0 if it is unknown."""
         demand = self.context.demands.get(name)
         return 0 if demand is None else min_time(demand.best, self.context.time_base(name))
+
+
+def _with_system(context: TimingContext, client: System) -> TimingContext:
+    """A timing context with the system as a client of the middleware sees it, and everything else that is known already."""
+    narrowed = copy(context)
+    narrowed.system = client
+    return narrowed

@@ -97,12 +97,16 @@ def calibrate_text(text: str, path: Path, measurements: Sequence[Measurement], o
     Raises
     ------
     ReadError : something in the description is wrong.
-    InvalidArgumentError : nothing was measured, or the values cannot be stated together.
+    InvalidArgumentError : nothing was measured, the values cannot be stated together, or there are several controllers.
     """
     if not measurements:
         raise InvalidArgumentError("nothing was measured; give at least one trace")
     mark = _BOM if text.startswith(_BOM) else ""
     before = describe_text(text.removeprefix(_BOM), path)
+    if before.controllers:
+        raise InvalidArgumentError(
+            f"{path} has several controllers; calibrate the description of each one with what was measured on it"
+        )
     built = BuiltObjects(before, text.removeprefix(_BOM))
     measured = [Measured(series, measurement) for measurement in measurements for series in measurement.series]
     executors = (choice.period for choice in before.assembly.choices if choice.task == choice.executor)

@@ -9,14 +9,12 @@ from functools import cached_property
 
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.kinds import KINDS
 from amalthea_uros.design.description.assign import Assignment, Assignments
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of
-from amalthea_uros.design.description.owners import Owner, OwnerKind, StatedTime, executors, owners
+from amalthea_uros.design.description.owners import Owner, OwnerKind, StatedTime, controllers_of, executors, owners
 from amalthea_uros.design.description.text_edits import Path
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
-from amalthea_uros.perf.qualified import qualified_name
 from amalthea_uros.spec.application import CallbackSection, Timer
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
@@ -73,11 +71,13 @@ class BuiltObjects:
         ------
         InvalidArgumentError : a description has no key for it.
         """
-        found = self._controller_of(change.object)
-        if found is not None:
-            objects, name = found
+        controller = self._controller_of(change.object)
+        if controller is not None:
+            objects, name = controller
             own = objects.assignments(replace(change, object=name))
-            return [replace(each, target=change.target if each.target == f"{name}.{change.key}" else each.target) for each in own]
+            return [
+                replace(each, target=change.target if each.target == f"{name}.{change.key}" else each.target) for each in own
+            ]
         if change.key == "memory":
             return list(self._memory(change))
         holders = [owner for owner in self._owners(change.object) if self._has(owner, change.key)]
@@ -92,28 +92,13 @@ class BuiltObjects:
         return collected.every
 
     def _controller_of(self, name: str) -> tuple[BuiltObjects, str] | None:
-        """What the controller of an object of a robot is built from, and the name of the object there; None if it is no robot's.
-
-        Raises
-        ------
-        InvalidArgumentError : the controller is described in another file.
-        """
-        if elsewhere := self.elsewhere(name):
-            raise InvalidArgumentError(elsewhere)
-        for index, section in enumerate(self.description.controllers):
-            described, own = self.values.controllers[section.name], name.removeprefix(qualified_name(section.name, ""))
+        """The objects that are built from a controller of a robot, one of which has a name, and its name there; None if none has."""
+        for index, section, own in controllers_of(name, self.description):
+            described = self.values.controllers[section.name]
             objects = BuiltObjects(described, self.text, ("controllers", index), self.values)
-            if own != name and (objects.knows(own) or own in described.assembly.system.labels):
+            if section.file is None and (objects.knows(own) or own in described.assembly.system.labels):
                 return objects, own
         return None
-
-    def elsewhere(self, name: str) -> str:
-        """Where an object of a robot is described instead; "" if it is here."""
-        for section in self.description.controllers:
-            own = name.removeprefix(qualified_name(section.name, ""))
-            if section.file is not None and own != name and own in _objects(self.values.controllers[section.name]):
-                return f"{name!r} is described in {section.file}; change {own!r} there"
-        return ""
 
     def _add(self, collected: Assignments, owner: Owner, change: Change) -> None:
         if change.key == "execution_time":
@@ -184,9 +169,9 @@ class BuiltObjects:
         ------
         InvalidArgumentError : it has none, or its parts are stated one by one.
         """
-        found = self._controller_of(name)
-        if found is not None:
-            return found[0].execution_time(found[1])
+        controller = self._controller_of(name)
+        if controller is not None:
+            return controller[0].execution_time(controller[1])
         holders = self._owners(name)
         if not holders:
             raise InvalidArgumentError(self._refusal(Change(name, "execution_time", "")))
@@ -331,10 +316,6 @@ class BuiltObjects:
     def callbacks(self) -> tuple[uros.Callback, ...]:
         """The callbacks, with their intervals and messages."""
         return uros.callbacks_of(self.description.application, self.description.middleware, Notes())
-
-
-def _objects(described: Described) -> set[str]:
-    return {name for kind in KINDS for name in kind.objects(described.assembly.system)}
 
 
 def _constant(parts: Iterable[ExecutionTimeSection | Time | None], name: str) -> Time:

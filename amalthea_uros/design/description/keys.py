@@ -121,8 +121,8 @@ def _inner(holders: tuple[Holder, ...], names: tuple[str, ...], path: Path, fiel
     elif isinstance(value, Mapping):
         for name, item in value.items():
             if isinstance(item, DescriptionSection):
-                own = _of_part(name, holders)
-                yield from _keys((*holders, Holder(path=(*path, name), section=item)), (*names, own), text)
+                named = _of_part(name, holders)
+                yield from _keys((*holders, Holder(path=(*path, name), section=item)), (*names, named), text)
             else:
                 yield DescriptionKey(path=(*path, name), names=(*names, name), holders=holders, field=field, item=name)
     elif isinstance(value, list) and has_list(text, path, len(value)):

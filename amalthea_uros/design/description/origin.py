@@ -14,7 +14,7 @@ from amalthea_uros.design.changes.timing_changes import Happening, timing_change
 from amalthea_uros.design.description.assign import Assignment, Assignments, apply_assignments, is_stated_by_parts, the_key
 from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of, matching, short_name
-from amalthea_uros.design.description.refusals import refusal
+from amalthea_uros.design.description.refusals import described_elsewhere, refusal
 from amalthea_uros.design.description.text_edits import rendered, value_text
 from amalthea_uros.design.description.texts import edited_assembly
 from amalthea_uros.errors import InvalidArgumentError
@@ -151,11 +151,11 @@ class DescriptionOrigin:
 
     def _of_built_object(self, change: Change) -> Sequence[Assignment]:
         """The edits for a value of an object that is built, such as the runnable of a task."""
-        objects = BuiltObjects(describe_text(self.text, self.path), self.text)
-        if elsewhere := objects.elsewhere(change.object):
-            raise InvalidArgumentError(f"{change}: {elsewhere}")
+        described = describe_text(self.text, self.path)
+        if elsewhere := described_elsewhere(change, described):
+            raise InvalidArgumentError(elsewhere)
         try:
-            return objects.assignments(change)
+            return BuiltObjects(described, self.text).assignments(change)
         except InvalidArgumentError as error:
             raise refusal(change, self.keys, self.present.system, error) from None
 

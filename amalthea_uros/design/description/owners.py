@@ -7,8 +7,9 @@ from enum import StrEnum
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.description.text_edits import Path, Value
+from amalthea_uros.perf.qualified import qualified_name
 from amalthea_uros.spec.application import CallbackSection, MessageCallback, Timer
-from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.description import Description, RobotController
 from amalthea_uros.spec.execution_time import ExecutionTimeSection
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.section import DescriptionSection
@@ -70,6 +71,14 @@ def owners(description: Description) -> Iterator[Owner]:
         path = ("middleware", "transport", "can", "interrupt")
         yield Owner(can.interrupt.name, OwnerKind.INTERRUPT, path, can.interrupt)
         yield Owner(f"{can.interrupt.name}_Frame", OwnerKind.INTERRUPT, path, can.interrupt)
+
+
+def controllers_of(name: str, description: Description) -> Iterator[tuple[int, RobotController, str]]:
+    """The controllers of a robot that can have an object of a name, with their places, and the name of the object there."""
+    for index, section in enumerate(description.controllers):
+        own = name.removeprefix(qualified_name(section.name, ""))
+        if own != name:
+            yield index, section, own
 
 
 def executors(description: Description) -> Iterator[tuple[Path, ExecutorSection]]:

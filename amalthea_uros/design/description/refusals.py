@@ -8,9 +8,11 @@ from amalthea_uros._internal.similar import did_you_mean, similar
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.kinds import KINDS
 from amalthea_uros.design.description.keys import DescriptionKey, is_listed, short_name
+from amalthea_uros.design.description.owners import controllers_of
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import listed
 from amalthea_uros.perf.system import System
+from amalthea_uros.uros.described import Described
 
 #: The keys of wires that decide about their bit rates.
 _RATES = ("baud_rate", "bitrate", "data_bitrate", "bandwidth", "speed")
@@ -57,6 +59,14 @@ def refusal(
         return reason
     advice = advice or str(reason)
     return InvalidArgumentError(f"unknown object {change.object!r}; {advice}" if change.object else f"{unstated}; {advice}")
+
+
+def described_elsewhere(change: Change, described: Described) -> str:
+    """Which file describes an object of a robot, if it is not that of the robot; "" otherwise."""
+    for _, section, own in controllers_of(change.object, described.description):
+        if section.file is not None and own in _objects(described.controllers[section.name].assembly.system):
+            return f"{change}: {change.object!r} is described in {section.file}; change {own!r} there"
+    return ""
 
 
 def _meant(change: Change, keys: Sequence[DescriptionKey], own: Sequence[str]) -> str:

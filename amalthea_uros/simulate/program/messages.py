@@ -186,7 +186,7 @@ class MessageRecords:
         return [each for each in every if transmission in relayed(each, self.system)]
 
     def _on_its_way(self, sent: Transmission, relay: Transmission) -> Iterator[Span]:
-        """What a message takes from the agent until it is queued on the wire to its receiver."""
+        """The times of a message from the agent until it is queued on the wire to its receiver."""
         between = latency_between(sent, relay, self.system)
         if between != Span(most=0):
             yield between

@@ -11,7 +11,7 @@ from amalthea_uros.perf.system import System
 
 
 def relayed(transmission: Transmission, system: System) -> list[Transmission]:
-    """The messages of this controller and of others that agents send here as another one."""
+    """The messages from any controller that agents send here as another one."""
     if transmission.direction is not Direction.TO_CONTROLLER or transmission.purpose is not Purpose.DATA:
         return []
     others = system.transmissions.values()
@@ -24,7 +24,7 @@ def relayed(transmission: Transmission, system: System) -> list[Transmission]:
 
 
 def latency_between(sent: Transmission, received: Transmission, system: System) -> Span:
-    """The time of a message from the agent of the controller that sends it to that of the one that receives it; unknown if not stated."""
+    """The time of a message from the agent of its sender to that of its receiver; unknown if it is not stated."""
     if sent.wire == received.wire:
         return Span(most=0)
     topic = plain_topic(received.topic)
