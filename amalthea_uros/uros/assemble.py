@@ -8,11 +8,10 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
-from amalthea_uros.spec.description import Description, RobotController
+from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.notes import Notes
-from amalthea_uros.uros.application.serving import placement
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
@@ -50,7 +49,6 @@ class Assembly(Brief):
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
     priority_scale : what priorities of tasks mean in the description
-    controllers : of a robot; what runs on them is described in their files, and here only its times are known
     """
 
     description: Description
@@ -67,7 +65,6 @@ class Assembly(Brief):
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
     priority_scale: PriorityScale
-    controllers: tuple[RobotController, ...] = ()
 
     @property
     def pools(self) -> tuple[Option, ...]:
@@ -133,7 +130,7 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
         system=system,
         members=members,
         choices=added.choices,
-        placement=placement(context.description, context.controller.platform) if added.callbacks else "",
+        placement=added.placement,
         messages=added.messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
         initialisation=initialisation(application, middleware, context.profile, context.line, first.period if first else None),

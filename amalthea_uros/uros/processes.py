@@ -9,6 +9,7 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.spec.description import Description
 from amalthea_uros.uros.application.callbacks import Callback, callbacks_of, internal_channels, sections_of
 from amalthea_uros.uros.application.notes import Notes
+from amalthea_uros.uros.application.serving import placement
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.background_tasks import add_background_tasks
 from amalthea_uros.uros.callback_tasks import add_callbacks
@@ -55,12 +56,14 @@ class AddedProcesses(NamedTuple):
     ----------
     messages : on the classic CAN bus, if there is one
     choices : the periods of executors without a loop and of the callbacks' tasks
+    placement : where callbacks run that do not say so, and who decided it; "" without callbacks
     network : None if no wire is a part of the system
     """
 
     callbacks: Sequence[Callback]
     messages: tuple[BusMessage, ...]
     choices: tuple[PeriodChoice, ...]
+    placement: str
     network: PlannedNetwork | None
 
 
@@ -95,4 +98,5 @@ def add_processes(context: AssemblyContext, options: Sequence[Option], database:
         advice = "Define callbacks under 'application', or tasks under 'tasks'."
         message = "no callback, task or interrupt service routine is defined"
         notes.error("APP009", message, description.location(), advice)
-    return AddedProcesses(callbacks, messages, choices, network)
+    where = placement(description, context.controller.platform) if callbacks else ""
+    return AddedProcesses(callbacks, messages, choices, where, network)

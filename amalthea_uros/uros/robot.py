@@ -19,11 +19,11 @@ from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.assembly.planned import HIGHER_IS_MORE_URGENT
 from amalthea_uros.uros.chain_members import members_together
+from amalthea_uros.uros.demands import with_demands
 from amalthea_uros.uros.host import host_of, topics_of_nodes
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.profiles import stated_profile
 from amalthea_uros.uros.stacks import separate_stacks
-from amalthea_uros.uros.system import with_demands
 
 
 def assemble_robot(description: Description, controllers: Mapping[str, Assembly]) -> Assembly:
@@ -67,7 +67,6 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
         ),
         task_periods=(),
         priority_scale=HIGHER_IS_MORE_URGENT,
-        controllers=tuple(description.controllers),
     )
 
 
