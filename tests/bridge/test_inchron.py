@@ -34,6 +34,7 @@ WISHES = {
     "drive-and-lift": {"INC-CO-KIND", "INC-OS-SEMA-TYPE"},
     "esp32-serial": {"INC-EV-LABEL-RUN", "INC-ST-TYPE"},
     "rclc-in-executor": {"INC-CO-KIND"},
+    "robot-two-controllers": {"INC-EV-KIND", "INC-LC-SCOPE", "INC-ST-TYPE"},
     "robot-with-host": {"INC-EV-KIND", "INC-LC-SCOPE", "INC-ST-TYPE"},
     "robot-xrce": {"INC-ST-TYPE"},
     "robot-zenoh": {"INC-ST-TYPE"},
