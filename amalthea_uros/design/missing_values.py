@@ -27,7 +27,7 @@ from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.event_models.stimuli import is_unbounded
 from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.scheduling.allocation import scheduler_cores, standard_policy
+from amalthea_uros.timing.scheduling.allocation import is_without_meaning, scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 if TYPE_CHECKING:
@@ -39,8 +39,6 @@ _PERIOD, _DEADLINE, _TIME_SLICE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "1ms"
 _CORE, _CORE_FREQUENCY = "CPU", "1GHz"
 #: What a process needs in any case if the changes give it a response time: nothing dispatched or activated it without them.
 _INDISPENSABLE = ("core", "scheduler", "period", "stimulus")
-#: A policy whose name says nothing.
-_WITHOUT_MEANING = "UserSpecificSchedulingAlgorithm"
 #: One statement can show that another one is needed: an allocated task needs a priority.
 _ROUNDS = 4
 #: Analyses of so many processes in all are tried, so that the proposal takes no longer than the analysis of a large model.
@@ -201,7 +199,7 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
     if lone is not None:
         yield Change(lone, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
     for name, scheduler in context.system.schedulers.items():
-        if scheduler.policy is None or scheduler.policy == _WITHOUT_MEANING:
+        if scheduler.policy is None or is_without_meaning(scheduler.policy):
             yield Change(name, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
         if standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
             yield Change(name, "time_slice", _TIME_SLICE)

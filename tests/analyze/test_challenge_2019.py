@@ -3,8 +3,8 @@
 The figures are those of the timing analysis in the MobSTr dataset (org.panorama-research.mobstr.analysis/cloud-based_analysis/
 dse_analysis/results.json, commit b2eaf82), by the tool of L. Krawczyk, M. Bazzal, R. P. Govindarajan and C. Wolff, "An analytical
 approach for calculating end-to-end response times in autonomous driving applications", WATERS 2019. They are of another mapping,
-so that only tasks on the same type of core and with the same tasks above them can be compared. The file has no event chains; those of the
-analysis are chains of tasks, of which the latencies under LET depend on the periods only.
+so that only tasks on the same type of core and with the same tasks above them can be compared. The file has no event chains; those of
+the analysis are chains of tasks, of which the latencies under LET depend on the periods only.
 """
 
 from dataclasses import replace
@@ -90,26 +90,33 @@ def test_waits_for_the_graphics_processor_are_bounded_once_its_policy_is_stated(
     assert [found[name].verdict for name in ("PRE_SFM_gpu_POST", "PRE_Detection_gpu_POST")] == ["met", "met"]
 
 
-def by_time_slices(detection, sfm):
-    return analysed(
-        "GPU_Sched.policy=PriorityBasedRoundRobin",
-        "Detection.priority=1",
-        f"Detection.time_slice={detection}us",
-        f"SFM.time_slice={sfm}us",
-    )
+BY_ROUND_ROBIN = ("GPU_Sched.policy=PriorityBasedRoundRobin", "Detection.priority=1")
 
 
-def test_waits_for_the_graphics_processor_are_bounded_by_time_slices_that_are_short_enough():
-    found = by_time_slices(9000, 3950)
+@pytest.mark.parametrize("policy", [BY_ROUND_ROBIN, ()], ids=["round robin", "without a name"])
+def test_waits_for_the_graphics_processor_are_bounded_by_time_slices_that_are_short_enough(policy):
+    found = analysed(*policy, "Detection.time_slice=9ms", "SFM.time_slice=3950us")
     # 7.9 ms in two slices, a slice of the other one before each; 116 ms in 13 slices.
     assert found["SFM"].response.worst == 7_900_000 * NS + 2 * 9_000_000 * NS
     assert found["Detection"].response.worst == 116_000_000 * NS + 13 * 3_950_000 * NS
     assert [found[name].verdict for name in ("PRE_SFM_gpu_POST", "PRE_Detection_gpu_POST")] == ["met", "met"]
 
 
+def test_time_slices_of_the_file_bound_waits_without_a_named_policy():
+    found = analysed()
+    # `TimeSlice_Detection` and `TimeSlice_SFM`: 116 ms in three slices of 50 ms, one of 7.2 ms of `SFM` before each.
+    assert found["Detection"].response.worst == 116_000_000 * NS + 3 * 7_200_000 * NS
+    lidar = found["Lidar_Grabber"].wcet
+    expected = found["Detection"].response.worst + 2 * lidar
+    assert (found["PRE_Detection_gpu_POST"].response.worst - expected) / NS == pytest.approx(3_692_060 + 1_020_000, abs=2)
+    assert found["PRE_Detection_gpu_POST"].verdict == "met"
+    # Two slices of 50 ms before the end of 7.9 ms, every 33 ms.
+    assert found["PRE_SFM_gpu_POST"].reason.endswith("the time slices of the others leave it too little time")
+    assert any("'GPU_Sched', each task that is pending gets its time slice" in each for each in found.assumptions)
+
+
 def test_the_time_slices_of_the_file_are_too_long_for_the_period_of_who_waits():
-    # `TimeSlice_Detection` and `TimeSlice_SFM`: two slices of 50 ms before the end of 7.9 ms, every 33 ms.
-    reason = by_time_slices(50_000, 7200)["PRE_SFM_gpu_POST"].reason
+    reason = analysed(*BY_ROUND_ROBIN)["PRE_SFM_gpu_POST"].reason
     assert reason == "it waits for 'SFM', which 'SFM' sets after up to 107.9 ms, so that activations may be lost"
 
 
@@ -128,7 +135,9 @@ def with_published_chains(system):
     for runnable in system.software.runnables:
         activities = runnable.activities
         if runnable.name == "Lidar_and_Camera_Function":
-            without_failures = (each.branches[1].activities if isinstance(each, ProbabilitySwitch) else (each,) for each in activities)
+            without_failures = (
+                each.branches[1].activities if isinstance(each, ProbabilitySwitch) else (each,) for each in activities
+            )
             activities = tuple(inner for part in without_failures for inner in part)
         elif runnable.name == "SFM_Postprocessing":
             activities = (*activities, LabelAccess(label="Matrix_SFM_host", kind=AccessKind.WRITE))

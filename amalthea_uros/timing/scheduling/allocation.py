@@ -103,6 +103,11 @@ def standard_policy(name: str | None) -> str | None:
     return _ALIASES.get((name or "").lower(), name)
 
 
+def is_without_meaning(policy: str | None) -> bool:
+    """Whether the name of a policy says nothing; migrated ones have a number."""
+    return policy is not None and policy.startswith("UserSpecificSchedulingAlgorithm")
+
+
 def is_by_priority(name: str | None) -> bool:
     """Whether a policy serves the highest priority first."""
     return standard_policy(name) in BY_PRIORITY | {Policy.FIXED_PRIORITY_WITH_BUDGETS}

@@ -7,8 +7,10 @@ Processes below a server share its budget.
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 
 from amalthea_uros._internal.records import dataclass, field, replace
@@ -24,6 +26,7 @@ from amalthea_uros.timing.scheduling.allocation import (
     deciding_scheduler,
     effective_deadline,
     effective_priority,
+    is_without_meaning,
     standard_policy,
 )
 from amalthea_uros.timing.scheduling.scheduled import (
@@ -34,7 +37,7 @@ from amalthea_uros.timing.scheduling.scheduled import (
     Server,
     StatedPlace,
 )
-from amalthea_uros.units import Duration, Time
+from amalthea_uros.units import Duration, Time, parse_duration
 
 #: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
 #: (`osekTaskGroup`, until 0.8.0).
@@ -45,6 +48,8 @@ CAPACITY = ("capacity", "maxBudget")
 PERIOD = ("period", "replenishment")
 #: The parameter of round robin.
 TIME_SLICE = "timeSliceLength"
+#: Time slices as text, which models until 1.2 have beside the parameters of a policy of their own.
+_SLICE_AS_TEXT = re.compile(r"(extended: )?timeslice(length)?(_.+)?", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +161,7 @@ class SchedulingOrder:
         if needed == _PRIORITY and parameters.priority is None and self._serves_one(scheduler):
             # Nothing competes with what is alone.
             parameters = replace(parameters, priority=0)
-        by_policy = _BY_POLICY.get(policy)
+        by_policy = _time_slices if self._states_slices(scheduler) else _BY_POLICY.get(policy)
         if by_policy is None:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
@@ -187,6 +192,19 @@ class SchedulingOrder:
         if _NEEDED[standard_policy(scheduler.policy) or ""] == _DEADLINE:
             return OrderGap.OTHER_WITHOUT_DEADLINE if parameters.deadline else OrderGap.NO_DEADLINE
         return OrderGap.NO_PRIORITY if parameters.priority is None else OrderGap.OTHER_WITHOUT_PRIORITY
+
+    def _states_slices(self, scheduler: Scheduler) -> bool:
+        """Whether nothing is known of a policy but the time slice of each of its tasks."""
+        if not is_without_meaning(scheduler.policy) or scheduler.parent is not None or not self._serves_tasks(scheduler):
+            return False
+        here = [each for each in self.system.mapping.tasks if deciding_scheduler(each.scheduler, self.system) == scheduler]
+        if len(here) < 2 or not all(_slice(scheduler, each.parameters) for each in here):
+            return False
+        self.notes.assume(
+            f"under the policy {scheduler.policy!r} of {scheduler.name!r}, each task that is pending gets its time slice once in a "
+            "cycle of all of them"
+        )
+        return True
 
     def _place(self, scheduler: Scheduler, parameters: _Parameters) -> StatedPlace | None:
         """The stated place of a task in the order of its scheduler; None if it can have any place."""
@@ -226,13 +244,16 @@ class SchedulingOrder:
             for task in self.system.mapping.tasks
             if (deciding := deciding_scheduler(task.scheduler, self.system)) is not None
         )
-        return tasks[scheduler.name] == self._served[scheduler.name]
+        return tasks[scheduler.name] == self._number_served(scheduler)
 
     def _serves_one(self, scheduler: Scheduler) -> bool:
         """Whether a scheduler decides for a single task or scheduler; groupings decide nothing."""
+        return self._number_served(scheduler) == 1
+
+    def _number_served(self, scheduler: Scheduler) -> int:
         if not self._served:
             self._served = Counter(self._deciders())
-        return self._served[scheduler.name] == 1
+        return self._served[scheduler.name]
 
     def _deciders(self) -> Iterator[str]:
         """The schedulers that decide for each task, and for each scheduler that decides something itself."""
@@ -360,6 +381,16 @@ class SchedulingOrder:
         return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
 
 
+def _slice(scheduler: Scheduler, parameters: Sequence[Parameter]) -> Time | None:
+    """The time slice of a task; None if none is stated, or several."""
+    stated = _time(_of(scheduler, parameters, TIME_SLICE))
+    texts = [value for each in parameters if _SLICE_AS_TEXT.fullmatch(each.name) for value in each.values]
+    if stated is None and len(texts) == 1 and isinstance(texts[0], str):
+        with suppress(ValueError):
+            return parse_duration(texts[0])
+    return stated
+
+
 def _time(value: ParameterValue | None) -> Time | None:
     return value.time if isinstance(value, Duration) else None
 
@@ -389,8 +420,13 @@ def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext
 
 def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
     found = _fixed_priority(scheduler, parameters, base)
-    length = parameters.required(_time(parameters.of(scheduler, TIME_SLICE)), TIME_SLICE)
+    length = parameters.required(_slice(scheduler, parameters.parameters), TIME_SLICE)
     return replace(found, equal_priority=EqualPriority.ROUND_ROBIN, slice=length)
+
+
+def _time_slices(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    length = parameters.required(_slice(scheduler, parameters.parameters), TIME_SLICE)
+    return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.TIME_SLICES, slice=length)
 
 
 def _deadline_monotonic(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:

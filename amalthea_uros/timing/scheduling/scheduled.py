@@ -19,7 +19,13 @@ class EqualPriority(StrEnum):
     FIFO = "first come, first served"
     EDF = "earliest deadline first"
     ROUND_ROBIN = "round robin"
+    TIME_SLICES = "time slices"
     UNKNOWN = "an order that is not stated"
+
+    @property
+    def has_slices(self) -> bool:
+        """Whether each task executes for a slice of time at most while others wait."""
+        return self in (EqualPriority.ROUND_ROBIN, EqualPriority.TIME_SLICES)
 
 
 class OrderGap(StrEnum):
