@@ -16,6 +16,7 @@ from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.analyze.response_times.waits import beside_waits, shorter_by_segments
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
+from amalthea_uros.timing.activation.releases import RELEASES
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
@@ -30,7 +31,7 @@ def responses_on(core: str, solution: Solution) -> dict[str, Response]:
     time_base = solution.context.demand_model.time_base(core)
     schedule = _new_schedule(core, solution)
     if schedule is not None:
-        solution.context.notes.assume("periodic tasks are released at their offsets; the default offset is 0")
+        solution.context.notes.assume(RELEASES)
         found = schedule.response_times()
     else:
         found = _CoreAnalysis(solution, core).responses(None, FULL)
