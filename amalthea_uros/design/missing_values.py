@@ -20,14 +20,14 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call, Execute, walk
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.os import Policy
-from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.activations import spare_stimulus
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.event_models.stimuli import is_unbounded
-from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.scheduling.allocation import is_without_meaning, scheduler_cores, standard_policy
+from amalthea_uros.timing.jobs.executed import executed, states_execution_time
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, is_without_meaning, scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 if TYPE_CHECKING:
@@ -207,8 +207,8 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
     for name, process in context.system.processes.items():
         if name in bounded:
             continue
-        if isinstance(process, Task) and name not in context.scheduled:
-            yield from _allocation(name, context.system, lone)
+        if name not in context.scheduled:
+            yield from _allocation(process, context.system, lone)
         if not process.stimuli:
             yield _activation(name, context.dataflow)
         for stimulus in (context.system.stimuli_by_name.get(each) for each in process.stimuli):
@@ -254,24 +254,28 @@ def _activation(process: str, dataflow: Dataflow) -> Change:
     return Change(process, "period", _PERIOD)
 
 
-def _allocation(task: str, system: System, core: str | None) -> Iterator[Change]:
-    """The first scheduler that is responsible for a core, or else the scheduler of a core, if nothing dispatches a task."""
-    if any(allocation.task == task for allocation in system.mapping.tasks):
+def _allocation(process: Process, system: System, core: str | None) -> Iterator[Change]:
+    """The first scheduler that is responsible for a core, or else the scheduler of a core, if nothing dispatches a process on one."""
+    name = process.name
+    if name in allocated_cores(system):
         return
-    if core is not None:
-        yield Change(task, "core", core)
+    if core is not None or not isinstance(process, Task):
+        yield Change(name, "core", core or next(iter(system.cores)))
     else:
-        yield Change(task, "scheduler", _dispatching(system)[0])
+        yield Change(name, "scheduler", _dispatching(system)[0])
 
 
 def _execution_times(process: str, system: System) -> Iterator[Change]:
-    """The execution times without bounds, of a process and what it calls."""
+    """The execution times without bounds, of a process and what it calls; if it has none, one of these."""
     activities = list(executed(system.processes[process].activities, system))
-    for name in dict.fromkeys(each.runnable for each in activities if isinstance(each, Call)):
+    called = list(dict.fromkeys(each.runnable for each in activities if isinstance(each, Call)))
+    for name in called:
         if name in system.runnables and any(map(_is_unbounded, walk(system.runnables[name].activities))):
             yield Change(name, "execution_time", _EXECUTION_TIME)
     if any(map(_is_unbounded, walk(system.processes[process].activities))):
         yield Change(process, "execution_time", _EXECUTION_TIME)
+    if not states_execution_time(system.processes[process], system):
+        yield Change((*called, process)[0], "execution_time", _EXECUTION_TIME)
 
 
 def _is_unbounded(activity: object) -> bool:

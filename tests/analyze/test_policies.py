@@ -624,3 +624,24 @@ def test_parameters_as_text_are_kept_in_versions_that_have_them():
         (Parameter("TimeSlice_A", ("2 us",)),),
         (Parameter("TimeSlice_B", ("3us",)),),
     ]
+
+
+def test_round_robin_needs_slices_only_where_a_priority_is_shared():
+    rows = [(name, 100, [ticks(4)], {"scheduler": "root", "priority": number}) for number, name in enumerate("CBA")]
+    found = analyze_system(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], rows))
+    assert [found[name].response.worst / US for name in "ABC"] == [4, 8, 12]
+    shared = [*rows, ("D", 100, [ticks(4)], {"scheduler": "root", "priority": 0})]
+    assert analyze_system(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], shared))["D"].reason == "it has no timeSliceLength"
+
+
+def test_schedulers_of_different_priorities_below_round_robin_need_no_slices():
+    # As the example of APP4MC for hierarchical scheduling: B is below A, whatever the priorities of their tasks are.
+    schedulers = [root(Policy.PRIORITY_BASED_ROUND_ROBIN), under("A", Policy.OSEK, 20), under("B", Policy.OSEK, 15)]
+    rows = [
+        ("low", 100, [ticks(4)], {"scheduler": "A", "priority": 1}),
+        ("high", 100, [ticks(4)], {"scheduler": "B", "priority": 50}),
+    ]
+    found = analyze_system(system(schedulers, rows))
+    assert [found[name].response.worst / US for name in ("low", "high")] == [4, 8]
+    same = [schedulers[0], *(under(name, Policy.OSEK, 20) for name in "AB")]
+    assert "shares its priority in 'root' with others" in analyze_system(system(same, rows))["low"].reason

@@ -60,8 +60,8 @@ def deciding_scheduler(scheduler: str, system: System) -> Scheduler | None:
     return next((each for each in upwards(scheduler, system) if each.policy != Policy.GROUPING), None)
 
 
-def effective_priority(allocation: TaskAllocation, system: System) -> int | None:
-    """The priority of a task, or of its group; None if there is none."""
+def effective_priority(allocation: TaskAllocation | Parent, system: System) -> int | None:
+    """The priority of a task or scheduler, or of its group; None if there is none."""
     return _effective(allocation, system, lambda stated: stated.priority)
 
 
@@ -71,7 +71,7 @@ def effective_deadline(allocation: TaskAllocation, system: System) -> Time | Non
 
 
 def _effective(
-    allocation: TaskAllocation, system: System, value: Callable[[TaskAllocation | Parent], int | None]
+    allocation: TaskAllocation | Parent, system: System, value: Callable[[TaskAllocation | Parent], int | None]
 ) -> int | None:
     """A parameter of a task, or of the nearest group that has it."""
     groups = takewhile(lambda each: each.policy == Policy.GROUPING, upwards(allocation.scheduler, system))

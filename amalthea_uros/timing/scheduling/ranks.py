@@ -97,6 +97,7 @@ class SchedulingOrder:
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
     _served: Counter[str] = field(init=False, default_factory=Counter)
+    _with_priority: Counter[tuple[str, int | None]] = field(init=False, default_factory=Counter)
     _lacking: frozenset[str] | None = field(init=False, default=None)
     _roots_of: defaultdict[str, list[str]] = field(init=False, default_factory=partial(defaultdict, list))
 
@@ -162,6 +163,8 @@ class SchedulingOrder:
             # Nothing competes with what is alone.
             parameters = replace(parameters, priority=0)
         by_policy = _time_slices if self._states_slices(scheduler) else _BY_POLICY.get(policy)
+        if policy == Policy.PRIORITY_BASED_ROUND_ROBIN and not self._is_shared(scheduler, parameters.priority):
+            by_policy = _fixed_priority
         if by_policy is None:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
@@ -316,10 +319,12 @@ class SchedulingOrder:
         policy = standard_policy(parent.policy)
         if policy not in BY_PRIORITY and policy not in SERVERS:
             return False
-        children = [s for s in self.system.schedulers.values() if s.parent is not None and s.parent.scheduler == parent.name]
-        priorities = [child.parent.priority for child in children if child.parent is not None]
-        priorities += [task.priority for task in self.system.mapping.tasks if task.scheduler == parent.name]
-        return priorities.count(priority) > 1
+        if not self._with_priority:
+            children = [each for each in self.system.schedulers.values() if standard_policy(each.policy) != Policy.GROUPING]
+            below = (*self.system.mapping.tasks, *(child.parent for child in children if child.parent is not None))
+            deciding = ((deciding_scheduler(each.scheduler, self.system), each) for each in below)
+            self._with_priority = Counter((by.name, effective_priority(each, self.system)) for by, each in deciding if by)
+        return self._with_priority[parent.name, priority] > 1
 
     def _server(self, scheduler: Scheduler, above: tuple[str, ...]) -> Server:
         if scheduler.name not in self.servers:
