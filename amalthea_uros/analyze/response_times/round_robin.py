@@ -44,7 +44,7 @@ def response_time(task: AnalysedTask, others: Sequence[AnalysedTask], higher: In
     window = _Window.of(task, others, higher, blocking)
     completions: list[Time] = []
     end = 0
-    # Whether or not all windows end, one that ends with its first job does.
+    # A window that ends with its first job is bounded, even if others need not end.
     for job in range(1, max_jobs(task) if window.is_bounded else 2):
         end = window.end(job, end)
         if end > LIMIT:
