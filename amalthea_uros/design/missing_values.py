@@ -255,14 +255,15 @@ def _activation(process: str, dataflow: Dataflow) -> Change:
 
 
 def _allocation(process: Process, system: System, core: str | None) -> Iterator[Change]:
-    """The first scheduler that is responsible for a core, or else the scheduler of a core, if nothing dispatches a process on one."""
-    name = process.name
-    if name in allocated_cores(system):
+    """A scheduler that is responsible for a core, in turn, or else the scheduler of a core, if nothing dispatches a process on one."""
+    name, placed = process.name, allocated_cores(system)
+    if name in placed:
         return
     if core is not None or not isinstance(process, Task):
         yield Change(name, "core", core or next(iter(system.cores)))
     else:
-        yield Change(name, "scheduler", _dispatching(system)[0])
+        schedulers, waiting = _dispatching(system), [each for each in system.processes if each not in placed]
+        yield Change(name, "scheduler", schedulers[waiting.index(name) % len(schedulers)])
 
 
 def _execution_times(process: str, system: System) -> Iterator[Change]:

@@ -16,7 +16,7 @@ from functools import partial
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Policy, Scheduler
+from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Parent, Policy, Scheduler
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
@@ -321,7 +321,8 @@ class SchedulingOrder:
             return False
         if not self._with_priority:
             children = [each for each in self.system.schedulers.values() if standard_policy(each.policy) != Policy.GROUPING]
-            below = (*self.system.mapping.tasks, *(child.parent for child in children if child.parent is not None))
+            parents = [child.parent for child in children if child.parent is not None]
+            below: list[TaskAllocation | Parent] = [*self.system.mapping.tasks, *parents]
             deciding = ((deciding_scheduler(each.scheduler, self.system), each) for each in below)
             self._with_priority = Counter((by.name, effective_priority(each, self.system)) for by, each in deciding if by)
         return self._with_priority[parent.name, priority] > 1
