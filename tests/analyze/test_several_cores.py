@@ -114,7 +114,7 @@ def test_who_is_never_preempted_and_need_not_end_in_its_period_leaves_all_unknow
     }
     assert bounds(found) == [None] * 3
     found = analyze_system(built([(10, 9, 9, 0)] * 3, preemption=NON_PREEMPTIVE))
-    assert found["T0"].reason == "its tasks need 135.0 % of 2 cores"
+    assert found["T0"].reason == "the jobs of its tasks need up to 135.0 % of its 2 cores"
 
 
 def test_who_is_never_preempted_has_no_bound_if_its_activations_are_not_known_but_for_a_jitter():

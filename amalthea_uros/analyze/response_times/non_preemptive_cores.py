@@ -27,7 +27,7 @@ def response_times(streams: Sequence[JobStream], cores: int) -> Iterator[Respons
     if found is None:
         reason = f"the schedules of its tasks on {cores} cores are too many to explore all of them"
         if load > cores:
-            reason = f"its tasks need {percent_text(load / cores, 1)} % of {cores} cores"
+            reason = f"the jobs of its tasks need up to {percent_text(load / cores, 1)} % of its {cores} cores"
     elif any(ends.latest > stream.period for ends, stream in zip(found, streams, strict=True)):
         reason = f"a task on its {cores} cores need not end before its next activation, and is never preempted"
     else:

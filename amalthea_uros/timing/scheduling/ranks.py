@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 
@@ -96,7 +96,7 @@ class SchedulingOrder:
     notes: AnalysisNotes
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
-    _served: Counter[str] = field(init=False, default_factory=Counter)
+    _served: defaultdict[str, list[TaskAllocation | Parent]] = field(init=False, default_factory=partial(defaultdict, list))
     _with_priority: Counter[tuple[str, int | None]] = field(init=False, default_factory=Counter)
     _lacking: frozenset[str] | None = field(init=False, default=None)
     _roots_of: defaultdict[str, list[str]] = field(init=False, default_factory=partial(defaultdict, list))
@@ -200,7 +200,7 @@ class SchedulingOrder:
         """Whether nothing is known of a policy but the time slice of each of its tasks."""
         if not is_without_meaning(scheduler.policy) or scheduler.parent is not None or not self._serves_tasks(scheduler):
             return False
-        here = [each for each in self.system.mapping.tasks if deciding_scheduler(each.scheduler, self.system) == scheduler]
+        here = self._tasks_below(scheduler)
         if len(here) < 2 or not all(_slice(scheduler, each.parameters) for each in here):
             return False
         self.notes.assume(
@@ -219,9 +219,10 @@ class SchedulingOrder:
         if policy != Policy.OSEK or group in (None, _NO_GROUP):
             return StatedPlace(priority, priority)
         # Those of a grouping can be in its group.
-        here = [each for each in self.system.mapping.tasks if deciding_scheduler(each.scheduler, self.system) == scheduler]
         members = [
-            each for each in here if each.scheduler != scheduler.name or _of(scheduler, each.parameters, _GROUP) == group
+            each
+            for each in self._tasks_below(scheduler)
+            if each.scheduler != scheduler.name or _of(scheduler, each.parameters, _GROUP) == group
         ]
         known = [level for each in members if (level := effective_priority(each, self.system)) is not None]
         return StatedPlace(priority, max(known)) if len(known) == len(members) else None
@@ -229,8 +230,9 @@ class SchedulingOrder:
     def _incomplete(self) -> frozenset[str]:
         """The schedulers that decide for a task without the priority or the deadline that their policy needs."""
         if self._lacking is None:
-            pairs = ((deciding_scheduler(task.scheduler, self.system), task) for task in self.system.mapping.tasks)
-            self._lacking = frozenset(each.name for each, task in pairs if each is not None and self._lacks(task, each))
+            schedulers = self.system.schedulers.values()
+            lacking = (by for by in schedulers if any(self._lacks(task, by) for task in self._tasks_below(by)))
+            self._lacking = frozenset(by.name for by in lacking)
         return self._lacking
 
     def _lacks(self, task: TaskAllocation, scheduler: Scheduler) -> bool:
@@ -240,35 +242,27 @@ class SchedulingOrder:
             return not effective_deadline(task, self.system)
         return needed == _PRIORITY and effective_priority(task, self.system) is None
 
-    def _serves_tasks(self, scheduler: Scheduler) -> bool:
-        """Whether a scheduler decides for no other scheduler that decides something itself."""
-        tasks = Counter(
-            deciding.name
-            for task in self.system.mapping.tasks
-            if (deciding := deciding_scheduler(task.scheduler, self.system)) is not None
-        )
-        return tasks[scheduler.name] == self._number_served(scheduler)
-
-    def _serves_one(self, scheduler: Scheduler) -> bool:
-        """Whether a scheduler decides for a single task or scheduler; groupings decide nothing."""
-        return self._number_served(scheduler) == 1
-
-    def _number_served(self, scheduler: Scheduler) -> int:
+    def _below(self, scheduler: Scheduler) -> Sequence[TaskAllocation | Parent]:
+        """The tasks and schedulers for which a scheduler decides; groupings decide nothing."""
         if not self._served:
-            self._served = Counter(self._deciders())
+            deciding = [each for each in self.system.schedulers.values() if standard_policy(each.policy) != Policy.GROUPING]
+            below = [each.parent for each in deciding if each.parent is not None]
+            for each in (*self.system.mapping.tasks, *below):
+                if (by := deciding_scheduler(each.scheduler, self.system)) is not None:
+                    self._served[by.name].append(each)
+                    self._with_priority[by.name, effective_priority(each, self.system)] += 1
         return self._served[scheduler.name]
 
-    def _deciders(self) -> Iterator[str]:
-        """The schedulers that decide for each task, and for each scheduler that decides something itself."""
-        below = [
-            other.parent.scheduler
-            for other in self.system.schedulers.values()
-            if other.parent is not None and standard_policy(other.policy) != Policy.GROUPING
-        ]
-        for name in (*below, *(task.scheduler for task in self.system.mapping.tasks)):
-            deciding = deciding_scheduler(name, self.system)
-            if deciding is not None:
-                yield deciding.name
+    def _tasks_below(self, scheduler: Scheduler) -> Sequence[TaskAllocation]:
+        return [each for each in self._below(scheduler) if isinstance(each, TaskAllocation)]
+
+    def _serves_tasks(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for no other scheduler that decides something itself."""
+        return len(self._tasks_below(scheduler)) == len(self._below(scheduler))
+
+    def _serves_one(self, scheduler: Scheduler) -> bool:
+        """Whether a scheduler decides for a single task or scheduler."""
+        return len(self._below(scheduler)) == 1
 
     def _policy(self, scheduler: Scheduler) -> str | None:
         """The standard name of the policy of a scheduler."""
@@ -319,13 +313,7 @@ class SchedulingOrder:
         policy = standard_policy(parent.policy)
         if policy not in BY_PRIORITY and policy not in SERVERS:
             return False
-        if not self._with_priority:
-            children = [each for each in self.system.schedulers.values() if standard_policy(each.policy) != Policy.GROUPING]
-            parents = [child.parent for child in children if child.parent is not None]
-            below: list[TaskAllocation | Parent] = [*self.system.mapping.tasks, *parents]
-            deciding = ((deciding_scheduler(each.scheduler, self.system), each) for each in below)
-            self._with_priority = Counter((by.name, effective_priority(each, self.system)) for by, each in deciding if by)
-        return self._with_priority[parent.name, priority] > 1
+        return bool(self._below(parent)) and self._with_priority[parent.name, priority] > 1
 
     def _server(self, scheduler: Scheduler, above: tuple[str, ...]) -> Server:
         if scheduler.name not in self.servers:
