@@ -20,6 +20,7 @@ from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.perf.activities import AccessKind, LabelAccess, ProbabilitySwitch
 from amalthea_uros.perf.events import EventChain, Events, ProcessChange, ProcessEvent, Segment, Sequence
+from amalthea_uros.timing.basics.settings import MemoryModel
 
 FOLDER = SHARED / "corpus" / "panorama-research+mobstr-dataset" / "org.panorama-research.mobstr.amalthea"
 MODEL = FOLDER / "mapped+safety" / "mobstr-mapped+safety.amxmi"
@@ -88,6 +89,15 @@ def test_waits_for_the_graphics_processor_are_bounded_once_its_policy_is_stated(
     expected = 4_712_060 + 155_500_000 + 2 * lidar
     assert found["PRE_Detection_gpu_POST"].response.worst / NS == pytest.approx(expected, abs=2)
     assert [found[name].verdict for name in ("PRE_SFM_gpu_POST", "PRE_Detection_gpu_POST")] == ["met", "met"]
+
+
+def test_copies_to_and_from_the_graphics_processor_take_the_time_of_its_data_rate():
+    # An image and a bounding box are read and written: 2 MB and 0.75 MB at 20 GB/s, with 5 cycles of 1.5 GHz for each access at most.
+    system = extract(load(MODEL)).system
+    with_copies = analyze_system(system, Settings(memory=MemoryModel.EXPLICIT))["Detection"].wcet
+    accesses = [size for size in (2.0, 0.75) for _ in range(2)]
+    expected = sum(size / 20_000 * 10**9 for size in accesses) + 4 * 5 / 1.5
+    assert (with_copies - analysed()["Detection"].wcet) / NS == pytest.approx(expected, abs=2)
 
 
 BY_ROUND_ROBIN = ("GPU_Sched.policy=PriorityBasedRoundRobin", "Detection.priority=1")

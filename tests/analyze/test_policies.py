@@ -374,6 +374,17 @@ class TestCosts:
             mapping=replace(built.mapping, placements=placements),
         )
 
+    def test_an_access_with_cycles_and_a_data_rate_takes_the_shorter_one_at_least_and_both_at_most(self):
+        # 8 bits at 2 Mbit/s take 4 us, and the cycles of the access 2 us.
+        built = self.with_memory(write("near"), ticks(1))
+        (structure,) = built.hardware.structures
+        (core,) = structure.cores
+        local = replace(core.accesses[0], latency=replace(core.accesses[0].latency, rate=2 * 10**6))
+        structure = replace(structure, cores=(replace(core, accesses=(local, core.accesses[1])),))
+        built = replace(built, hardware=replace(built.hardware, structures=(structure,)))
+        process = analyze_system(built, Settings(memory=MemoryModel.EXPLICIT))["T"]
+        assert (process.bcet / US, process.wcet / US) == (1 + 2, 1 + 2 + 4)
+
     @pytest.mark.parametrize(
         ("change", "reason"),
         [
