@@ -80,18 +80,13 @@ def missing_values(
     nothing = MissingValues(given, (), (), lacks_schedulers=True) if lacks_schedulers else None
     if len(trial.before) == len(analysis.processes) or len(analysis.processes) > _EFFORT:
         return nothing
-    changes: list[Change] = []
-    current = analysis
-    for _ in range(_ROUNDS):
-        new = trial.accepted(changes, (*unset, *_wanted(current)))
-        if not new or not trial.may_continue():
-            break
-        changes += new
-        current = analyze_system(*origin.configure(changes))
-        trial.note(changes, current)
-    changes = trial.shortened(changes)
-    gained = trial.gained(changes)
-    return MissingValues(given, tuple(changes), tuple(gained), lacks_schedulers) if gained else nothing
+    # Where nothing is gained with priorities above those that are stated, something may be with others below them.
+    stated = [each.priority for each in system.mapping.tasks if each.priority is not None]
+    for first_priority in (1, min(stated, default=0) - (len(system.mapping.tasks) - len(stated))):
+        changes = trial.shortened(trial.stated(analysis, unset, first_priority))
+        if gained := trial.gained(changes):
+            return MissingValues(given, tuple(changes), tuple(gained), lacks_schedulers)
+    return nothing
 
 
 def _dispatching(system: System) -> list[str]:
@@ -136,6 +131,18 @@ class _ValueTrial:
         """Whether another analysis is within the effort; counts it."""
         self.effort += max(1, self.size)
         return self.effort <= _EFFORT
+
+    def stated(self, current: Analysis, unset: Sequence[Change], first_priority: int) -> list[Change]:
+        """All values that processes without a bound lack, and what these lack once they are stated."""
+        changes: list[Change] = []
+        for _ in range(_ROUNDS):
+            new = self.accepted(changes, (*unset, *_wanted(current, first_priority)))
+            if not new or not self.may_continue():
+                break
+            changes += new
+            current = analyze_system(*self.origin.configure(changes))
+            self.note(changes, current)
+        return changes
 
     def accepted(self, changes: Sequence[Change], wanted: Iterable[Change]) -> list[Change]:
         """Those of the wanted changes that are possible and not made yet."""
@@ -190,7 +197,7 @@ def _parts(changes: Sequence[Change], gained: Sequence[str]) -> Iterator[list[Ch
     yield from ([each] for each in reversed(needless))
 
 
-def _wanted(analysis: Analysis) -> Iterator[Change]:
+def _wanted(analysis: Analysis, first_priority: int) -> Iterator[Change]:
     """The values that the processes without a bound, and those beside them, do not state."""
     bounded = _bounded(analysis)
     context = analysis.solution.context
@@ -203,7 +210,7 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
             yield Change(name, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
         if standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
             yield Change(name, "time_slice", _TIME_SLICE)
-    yield from _priorities(analysis)
+    yield from _priorities(analysis, first_priority)
     for name, process in context.system.processes.items():
         if name in bounded:
             continue
@@ -228,11 +235,11 @@ def _clocks(system: System, settings: Settings) -> Iterator[Change]:
             yield Change(name, "frequency", _FREQUENCY)
 
 
-def _priorities(analysis: Analysis) -> Iterator[Change]:
+def _priorities(analysis: Analysis, first: int) -> Iterator[Change]:
     """Priorities that schedulers need, each another one and none that is used; rate-monotonic, which misses the least."""
     context = analysis.solution.context
     used = {allocation.priority for allocation in context.system.mapping.tasks}
-    unused = (number for number in count(1) if number not in used)
+    unused = (number for number in count(first) if number not in used)
     for allocation in sorted(context.system.mapping.tasks, key=lambda each: _rate(analysis, each.task)):
         scheduled = context.scheduled.get(allocation.task)
         is_needed = scheduled is None or scheduled.equal_priority is EqualPriority.UNKNOWN

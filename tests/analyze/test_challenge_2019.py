@@ -15,7 +15,7 @@ from itertools import pairwise
 import pytest
 from support import SHARED
 
-from amalthea_uros import Claim, Communication, LatencyQuantity, Settings, analyze_system, extract, load
+from amalthea_uros import Claim, Communication, LatencyQuantity, Settings, analyze_files, analyze_system, extract, load
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.perf.activities import AccessKind, LabelAccess, ProbabilitySwitch
@@ -128,6 +128,13 @@ def test_time_slices_of_the_file_bound_waits_without_a_named_policy():
 def test_the_time_slices_of_the_file_are_too_long_for_the_period_of_who_waits():
     reason = analysed(*BY_ROUND_ROBIN)["PRE_SFM_gpu_POST"].reason
     assert reason == "it waits for 'SFM', which 'SFM' sets after up to 107.9 ms, so that activations may be lost"
+
+
+def test_a_policy_by_priorities_is_proposed_with_the_long_task_below_the_short_one():
+    # `Detection` above `SFM` would give nothing that the time slices do not give.
+    missing = analyze_files(MODEL, with_missing=True).missing
+    assert list(map(str, missing.changes)) == ["GPU_Sched.policy=FixedPriorityPreemptive", "Detection.priority=-1"]
+    assert set(missing.gained) == {"SFM", "PRE_SFM_gpu_POST"}
 
 
 @pytest.mark.parametrize("task", ["Localization", "Lane_detection"])
