@@ -69,7 +69,7 @@ def play(tasks, offsets, until, serves=lambda _: True, tie=1):
         if job[2] == 0:
             waiting.remove(job)
             worst[job[1]] = max(worst[job[1]], now + 1 - job[0])
-        if tasks[job[1]].equal_priority.has_slices:
+        if tasks[job[1]].equal_priority in (EqualPriority.ROUND_ROBIN, EqualPriority.TIME_SLICES):
             used += 1
             is_done = not any(other[1] == job[1] for other in waiting)
             if used == tasks[job[1]].slice or is_done:

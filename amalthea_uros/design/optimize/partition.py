@@ -193,8 +193,7 @@ def _is_separable(problem: Problem) -> bool:
     return len(context.scheduled) == len(system.processes) and all(
         is_preemptive(item)
         and item.server is None
-        and not item.equal_priority.has_slices
-        and item.equal_priority is not EqualPriority.UNKNOWN
+        and item.equal_priority in (EqualPriority.FIFO, EqualPriority.EDF)
         and context.protection[item.name] == LockUsage()
         for item in context.scheduled.values()
     )

@@ -246,8 +246,9 @@ class SchedulingOrder:
         """The tasks and schedulers for which a scheduler decides; groupings decide nothing."""
         if not self._served:
             deciding = [each for each in self.system.schedulers.values() if standard_policy(each.policy) != Policy.GROUPING]
-            below = [each.parent for each in deciding if each.parent is not None]
-            for each in (*self.system.mapping.tasks, *below):
+            parents = [each.parent for each in deciding if each.parent is not None]
+            below: list[TaskAllocation | Parent] = [*self.system.mapping.tasks, *parents]
+            for each in below:
                 if (by := deciding_scheduler(each.scheduler, self.system)) is not None:
                     self._served[by.name].append(each)
                     self._with_priority[by.name, effective_priority(each, self.system)] += 1
