@@ -89,9 +89,19 @@ SYSTEM = System(
             software.Task(name="Event", stimuli=("sporadic",)),
             software.Task(name="Free"),
             calling("Idle", "Nothing"),
+            software.Task(name="Mixed", stimuli=("tick",), activities=(ticks(4), activities.Call(runnable="Empty"))),
         ),
         isrs=(software.Isr(name="I", stimuli=("sporadic",), activities=(ticks(3),)),),
-        runnables=(*(runnable("RA", 4), runnable("R1", 5), runnable("R2", 6), runnable("Twice", 1, 2), runnable("Nothing")),),
+        runnables=(
+            *(
+                runnable("RA", 4),
+                runnable("R1", 5),
+                runnable("R2", 6),
+                runnable("Twice", 1, 2),
+                runnable("Nothing"),
+                runnable("Empty"),
+            ),
+        ),
         modes=(software.Mode(name="Gear", literals=("first", "second")),),
         mode_labels=(
             software.ModeLabel(name="gear", mode="Gear", initial="first"),
@@ -140,6 +150,7 @@ VALUES = {
     "Own.execution_time=12us": ("3.33333333333 us", "12 us"),  # 3 MHz
     "I.execution_time=1us": ("3 us", "1 us"),
     "Nothing.execution_time=2ticks": ("not set", "2 ticks"),
+    "Mixed.execution_time=2ticks": ("4 ticks", "2 ticks"),
     "Free.execution_time=2ticks": ("not set", "2 ticks"),
     "C0.frequency=300MHz": ("1 MHz", "300 MHz"),
     "fast.frequency=2MHz": ("3 MHz", "2 MHz"),

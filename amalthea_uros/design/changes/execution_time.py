@@ -142,7 +142,7 @@ def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -
     match _demands(walk(process.activities)), runnables:
         case [], [runnable] if _callers(runnable, system) == [name]:
             return _with_demand(configuration, RUNNABLES, runnable, distribution)
-        case _, [] if not called:
+        case own, [] if own or not called:
             return _with_demand(configuration, TASKS if isinstance(process, Task) else ISRS, name, distribution)
     choices = listed([f"{each}.execution_time" for each in runnables or sorted(called)])
     raise InvalidArgumentError(f"{name!r} has no single execution time of its own; change those of its runnables: {choices}")
