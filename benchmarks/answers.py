@@ -28,6 +28,8 @@ class Answers:
     timed : processes with an execution time, on their core or on each kind of core
     gained, stated : processes that have a bounded response time with the values that the analysis proposes, and how many values
     commands : files for which it proposes some
+    with_processes, answered : files with processes, also those that execute nothing, and those of them with a bounded response time or
+        with proposals
     reasons, files_of : why response times are unknown: in how many processes and files; names in the texts are left out
     """
 
@@ -40,6 +42,8 @@ class Answers:
     gained: int = 0
     stated: int = 0
     commands: int = 0
+    with_processes: int = 0
+    answered: int = 0
     chains: int = 0
     with_latency: int = 0
     reasons: Counter[str] = field(default_factory=Counter)
@@ -52,16 +56,19 @@ class Answers:
         except ReadError:
             return
         processes, system = result.analysis.processes, result.system
+        bounded = [each for each in processes if each.wcrt is not None]
+        has_proposals = result.missing is not None and bool(result.missing.changes)
+        self.with_processes += bool(processes)
+        self.answered += bool(bounded) or has_proposals
         if not processes or not any(runnable.activities for runnable in system.runnables.values()):
             return
-        bounded = [each for each in processes if each.wcrt is not None]
         self.files += 1
         self.complete += len(bounded) == len(processes)
         self.partial += 0 < len(bounded) < len(processes)
         self.processes += len(processes)
         self.bounded += len(bounded)
         self.timed += sum(map(_is_timed, processes))
-        if result.missing is not None and result.missing.changes:
+        if result.missing is not None and has_proposals:
             self.gained += len(result.missing.gained)
             self.stated += len(result.missing.changes)
             self.commands += 1
@@ -94,6 +101,7 @@ def lines(answers: Answers) -> Iterator[str]:
     yield f"{answers.files} files: {answers.complete} with all response times, {answers.partial} with some"
     yield f"{answers.processes} processes: {answers.bounded} with a bounded response time, {answers.timed} with an execution time"
     yield f"{answers.gained} more with {answers.stated} values that the analysis proposes for {answers.commands} files"
+    yield f"{answers.with_processes} files with processes: {answers.answered} with a response time or such values"
     yield f"{answers.chains} chains: {answers.with_latency} with latencies"
     for reason, number in answers.reasons.most_common():
         yield f"{number:5} in {answers.files_of[reason]:3} files: {reason}"

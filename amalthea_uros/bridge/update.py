@@ -127,6 +127,8 @@ class _Update:
         else:
             setattr(target, feature.name, added)
         self._targets[_built_key(element)] = added
+        # An added operating system brings its schedulers and controllers with it.
+        self._targets |= _keyed(added, _built_key)
 
     def _copy(self, element: Element) -> Element:
         """A copy that refers to objects of the model."""

@@ -20,14 +20,14 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call, Execute, walk
 from amalthea_uros.perf.distributions import highest, lowest
 from amalthea_uros.perf.os import Policy
-from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.activations import spare_stimulus
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.event_models.stimuli import is_unbounded
-from amalthea_uros.timing.jobs.executed import executed
-from amalthea_uros.timing.scheduling.allocation import scheduler_cores, standard_policy
+from amalthea_uros.timing.jobs.executed import executed, states_execution_time
+from amalthea_uros.timing.scheduling.allocation import allocated_cores, is_without_meaning, scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 if TYPE_CHECKING:
@@ -39,8 +39,6 @@ _PERIOD, _DEADLINE, _TIME_SLICE, _FREQUENCY, _EXECUTION_TIME = "1s", "1s", "1ms"
 _CORE, _CORE_FREQUENCY = "CPU", "1GHz"
 #: What a process needs in any case if the changes give it a response time: nothing dispatched or activated it without them.
 _INDISPENSABLE = ("core", "scheduler", "period", "stimulus")
-#: A policy whose name says nothing.
-_WITHOUT_MEANING = "UserSpecificSchedulingAlgorithm"
 #: One statement can show that another one is needed: an allocated task needs a priority.
 _ROUNDS = 4
 #: Analyses of so many processes in all are tried, so that the proposal takes no longer than the analysis of a large model.
@@ -82,18 +80,13 @@ def missing_values(
     nothing = MissingValues(given, (), (), lacks_schedulers=True) if lacks_schedulers else None
     if len(trial.before) == len(analysis.processes) or len(analysis.processes) > _EFFORT:
         return nothing
-    changes: list[Change] = []
-    current = analysis
-    for _ in range(_ROUNDS):
-        new = trial.accepted(changes, (*unset, *_wanted(current)))
-        if not new or not trial.may_continue():
-            break
-        changes += new
-        current = analyze_system(*origin.configure(changes))
-        trial.note(changes, current)
-    changes = trial.shortened(changes)
-    gained = trial.gained(changes)
-    return MissingValues(given, tuple(changes), tuple(gained), lacks_schedulers) if gained else nothing
+    # Where nothing is gained with priorities above those that are stated, something may be with others below them.
+    stated = [each.priority for each in system.mapping.tasks if each.priority is not None]
+    for first_priority in (1, min(stated, default=0) - (len(system.mapping.tasks) - len(stated))):
+        changes = trial.shortened(trial.stated(analysis, unset, first_priority))
+        if gained := trial.gained(changes):
+            return MissingValues(given, tuple(changes), tuple(gained), lacks_schedulers)
+    return nothing
 
 
 def _dispatching(system: System) -> list[str]:
@@ -138,6 +131,18 @@ class _ValueTrial:
         """Whether another analysis is within the effort; counts it."""
         self.effort += max(1, self.size)
         return self.effort <= _EFFORT
+
+    def stated(self, current: Analysis, unset: Sequence[Change], first_priority: int) -> list[Change]:
+        """All values that processes without a bound lack, and what these lack once they are stated."""
+        changes: list[Change] = []
+        for _ in range(_ROUNDS):
+            new = self.accepted(changes, (*unset, *_wanted(current, first_priority)))
+            if not new or not self.may_continue():
+                break
+            changes += new
+            current = analyze_system(*self.origin.configure(changes))
+            self.note(changes, current)
+        return changes
 
     def accepted(self, changes: Sequence[Change], wanted: Iterable[Change]) -> list[Change]:
         """Those of the wanted changes that are possible and not made yet."""
@@ -192,7 +197,7 @@ def _parts(changes: Sequence[Change], gained: Sequence[str]) -> Iterator[list[Ch
     yield from ([each] for each in reversed(needless))
 
 
-def _wanted(analysis: Analysis) -> Iterator[Change]:
+def _wanted(analysis: Analysis, first_priority: int) -> Iterator[Change]:
     """The values that the processes without a bound, and those beside them, do not state."""
     bounded = _bounded(analysis)
     context = analysis.solution.context
@@ -201,16 +206,16 @@ def _wanted(analysis: Analysis) -> Iterator[Change]:
     if lone is not None:
         yield Change(lone, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
     for name, scheduler in context.system.schedulers.items():
-        if scheduler.policy is None or scheduler.policy == _WITHOUT_MEANING:
+        if scheduler.policy is None or is_without_meaning(scheduler.policy):
             yield Change(name, "policy", str(Policy.FIXED_PRIORITY_PREEMPTIVE))
         if standard_policy(scheduler.policy) == Policy.PRIORITY_BASED_ROUND_ROBIN:
             yield Change(name, "time_slice", _TIME_SLICE)
-    yield from _priorities(analysis)
+    yield from _priorities(analysis, first_priority)
     for name, process in context.system.processes.items():
         if name in bounded:
             continue
-        if isinstance(process, Task) and name not in context.scheduled:
-            yield from _allocation(name, context.system, lone)
+        if name not in context.scheduled:
+            yield from _allocation(process, context.system, lone)
         if not process.stimuli:
             yield _activation(name, context.dataflow)
         for stimulus in (context.system.stimuli_by_name.get(each) for each in process.stimuli):
@@ -230,11 +235,11 @@ def _clocks(system: System, settings: Settings) -> Iterator[Change]:
             yield Change(name, "frequency", _FREQUENCY)
 
 
-def _priorities(analysis: Analysis) -> Iterator[Change]:
+def _priorities(analysis: Analysis, first: int) -> Iterator[Change]:
     """Priorities that schedulers need, each another one and none that is used; rate-monotonic, which misses the least."""
     context = analysis.solution.context
     used = {allocation.priority for allocation in context.system.mapping.tasks}
-    unused = (number for number in count(1) if number not in used)
+    unused = (number for number in count(first) if number not in used)
     for allocation in sorted(context.system.mapping.tasks, key=lambda each: _rate(analysis, each.task)):
         scheduled = context.scheduled.get(allocation.task)
         is_needed = scheduled is None or scheduled.equal_priority is EqualPriority.UNKNOWN
@@ -256,24 +261,29 @@ def _activation(process: str, dataflow: Dataflow) -> Change:
     return Change(process, "period", _PERIOD)
 
 
-def _allocation(task: str, system: System, core: str | None) -> Iterator[Change]:
-    """The first scheduler that is responsible for a core, or else the scheduler of a core, if nothing dispatches a task."""
-    if any(allocation.task == task for allocation in system.mapping.tasks):
+def _allocation(process: Process, system: System, core: str | None) -> Iterator[Change]:
+    """A scheduler that is responsible for a core, in turn, or else the scheduler of a core, if nothing dispatches a process on one."""
+    name, placed = process.name, allocated_cores(system)
+    if name in placed:
         return
-    if core is not None:
-        yield Change(task, "core", core)
+    if core is not None or not isinstance(process, Task):
+        yield Change(name, "core", core or next(iter(system.cores)))
     else:
-        yield Change(task, "scheduler", _dispatching(system)[0])
+        schedulers, waiting = _dispatching(system), [each for each in system.processes if each not in placed]
+        yield Change(name, "scheduler", schedulers[waiting.index(name) % len(schedulers)])
 
 
 def _execution_times(process: str, system: System) -> Iterator[Change]:
-    """The execution times without bounds, of a process and what it calls."""
+    """The execution times without bounds, of a process and what it calls; if it has none, one of these."""
     activities = list(executed(system.processes[process].activities, system))
-    for name in dict.fromkeys(each.runnable for each in activities if isinstance(each, Call)):
+    called = list(dict.fromkeys(each.runnable for each in activities if isinstance(each, Call)))
+    for name in called:
         if name in system.runnables and any(map(_is_unbounded, walk(system.runnables[name].activities))):
             yield Change(name, "execution_time", _EXECUTION_TIME)
     if any(map(_is_unbounded, walk(system.processes[process].activities))):
         yield Change(process, "execution_time", _EXECUTION_TIME)
+    if not states_execution_time(system.processes[process], system):
+        yield Change((*called, process)[0], "execution_time", _EXECUTION_TIME)
 
 
 def _is_unbounded(activity: object) -> bool:

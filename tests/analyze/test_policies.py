@@ -12,6 +12,8 @@ from system_strategies import systems
 
 from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.bridge.build import build_model
+from amalthea_uros.bridge.extract import extract
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf import conditions, hardware, mapping, os
 from amalthea_uros.perf.activities import (
@@ -372,6 +374,17 @@ class TestCosts:
             mapping=replace(built.mapping, placements=placements),
         )
 
+    def test_an_access_with_cycles_and_a_data_rate_takes_the_shorter_one_at_least_and_both_at_most(self):
+        # 8 bits at 2 Mbit/s take 4 us, and the cycles of the access 2 us.
+        built = self.with_memory(write("near"), ticks(1))
+        (structure,) = built.hardware.structures
+        (core,) = structure.cores
+        local = replace(core.accesses[0], latency=replace(core.accesses[0].latency, rate=2 * 10**6))
+        structure = replace(structure, cores=(replace(core, accesses=(local, core.accesses[1])),))
+        built = replace(built, hardware=replace(built.hardware, structures=(structure,)))
+        process = analyze_system(built, Settings(memory=MemoryModel.EXPLICIT))["T"]
+        assert (process.bcet / US, process.wcet / US) == (1 + 2, 1 + 2 + 4)
+
     @pytest.mark.parametrize(
         ("change", "reason"),
         [
@@ -571,3 +584,75 @@ def test_no_system_is_too_strange(system, memory):
     for process in analysis.processes:
         assert process.response is not None or process.reason
     propose_priorities(analysis)
+
+
+def sliced(slices, body=None, **more):
+    """Tasks of a policy without a name, every 100 us, with the time slices that are given as text."""
+    rows = [
+        (
+            name,
+            100,
+            body or (ticks(4),),
+            {"scheduler": "root", "parameters": (Parameter(f"TimeSlice_{name}", (text,)),) if text else ()},
+        )
+        for name, text in slices.items()
+    ]
+    return system([root("UserSpecificSchedulingAlgorithm")], rows, **more)
+
+
+def test_time_slices_bound_the_tasks_of_a_policy_without_a_name():
+    found = analyze_system(sliced({"A": "2 us", "B": "3us"}))
+    # Two slices of 3 us before the two of A, two of 2 us before the two of B.
+    assert [found[name].response.worst / US for name in "AB"] == [4 + 2 * 3, 4 + 2 * 2]
+
+
+@pytest.mark.parametrize("slices", [{"A": "2 us", "B": ""}, {"A": "2 us", "B": "soon"}, {"A": "2 us"}])
+def test_a_policy_without_a_name_is_unknown_unless_several_tasks_all_have_time_slices(slices):
+    reason = analyze_system(sliced(slices))["A"].reason
+    assert reason == "there is no analysis for the policy UserSpecificSchedulingAlgorithm of its scheduler 'root'"
+
+
+def test_what_precedes_or_prolongs_time_slices_leaves_them_unknown():
+    isr = Isr(name="I", stimuli=("every I",), activities=(ticks(1),))
+    found = analyze_system(
+        sliced(
+            {"A": "2 us", "B": "3 us"},
+            stimuli=[RelativePeriodic(name="every I", distance=Boundaries(lower=50 * US, upper=99 * US))],
+            isrs=[isr],
+            isr_allocations=[mapping.IsrAllocation(isr="I", controller="controller")],
+            interrupt_controllers=(os.InterruptController(name="controller", cores=("core",)),),
+        )
+    )
+    assert found["A"].reason == "what precedes it may take a part of its time slices"
+    locking = analyze_system(sliced({"A": "2 us", "B": "3 us"}, locked("lock", 4), semaphores=(os.Semaphore(name="lock"),)))
+    assert locking["A"].reason == "what cannot be preempted everywhere may prolong time slices on its core"
+
+
+def test_parameters_as_text_are_kept_in_versions_that_have_them():
+    slices = sliced({"A": "2 us", "B": "3us"}, overheads=(Overhead(name="overhead"),))
+    written = build_model(slices, "1.2.0")
+    assert [each.parameters for each in extract(written).system.mapping.tasks] == [
+        (Parameter("TimeSlice_A", ("2 us",)),),
+        (Parameter("TimeSlice_B", ("3us",)),),
+    ]
+
+
+def test_round_robin_needs_slices_only_where_a_priority_is_shared():
+    rows = [(name, 100, [ticks(4)], {"scheduler": "root", "priority": number}) for number, name in enumerate("CBA")]
+    found = analyze_system(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], rows))
+    assert [found[name].response.worst / US for name in "ABC"] == [4, 8, 12]
+    shared = [*rows, ("D", 100, [ticks(4)], {"scheduler": "root", "priority": 0})]
+    assert analyze_system(system([root(Policy.PRIORITY_BASED_ROUND_ROBIN)], shared))["D"].reason == "it has no timeSliceLength"
+
+
+def test_schedulers_of_different_priorities_below_round_robin_need_no_slices():
+    # As the example of APP4MC for hierarchical scheduling: B is below A, whatever the priorities of their tasks are.
+    schedulers = [root(Policy.PRIORITY_BASED_ROUND_ROBIN), under("A", Policy.OSEK, 20), under("B", Policy.OSEK, 15)]
+    rows = [
+        ("low", 100, [ticks(4)], {"scheduler": "A", "priority": 1}),
+        ("high", 100, [ticks(4)], {"scheduler": "B", "priority": 50}),
+    ]
+    found = analyze_system(system(schedulers, rows))
+    assert [found[name].response.worst / US for name in ("low", "high")] == [4, 8]
+    same = [schedulers[0], *(under(name, Policy.OSEK, 20) for name in "AB")]
+    assert "shares its priority in 'root' with others" in analyze_system(system(same, rows))["low"].reason

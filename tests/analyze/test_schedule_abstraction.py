@@ -1,6 +1,7 @@
 """The graph of all schedules of non-preemptive jobs: published examples, and every combination of releases and execution times."""
 
 from itertools import product
+from operator import le
 
 import pytest
 from effort import examples
@@ -47,25 +48,42 @@ def test_the_task_set_of_figure_1_meets_its_deadlines_with_the_long_task_before_
     assert [ends.latest for ends in explored([short, middle, long])] == [24 - 10, 10, 25]
     found = explored([short, long, middle])
     assert all(ends.latest <= period for ends, period in zip(found, (10, 60, 30), strict=True))
+    # On two cores, the authors state that it does with the priorities of the figure, too.
+    found = explored([short, middle, long], cores=2)
+    assert all(ends.latest <= period for ends, period in zip(found, (10, 30, 60), strict=True))
+
+
+def test_figure_1_of_2018_misses_a_deadline_on_two_cores():
+    # The authors' job set (global_fig1_file), by priority, with its deadlines.
+    jobs = [job(0, (2, 4)), job(0, (10, 15)), job(5, (1, 7)), job(8, (2, 3)), job(8, (1, 1))]
+    late = [
+        ends.latest + each.first > limit for ends, each, limit in zip(explored(jobs, 2), jobs, (7, 20, 15, 20, 14), strict=True)
+    ]
+    assert late == [False, False, False, False, True]
+
+
+def test_a_core_is_free_with_the_first_of_two_jobs():
+    # The state after two jobs of [5, 15] and [12, 30] (figure 3 of 2018): the first core is free in [5, 15].
+    third = explored([job(0, (5, 15)), job(0, (12, 30)), job(0, (1, 1))], cores=2)[2]
+    assert (third.earliest, third.latest) == (5 + 1, 15 + 1)
 
 
 @st.composite
-def streams(draw):
-    found = []
-    for _ in range(draw(st.integers(2, 3))):
-        shortest = draw(st.integers(1, 4))
-        found.append(
-            JobStream(
-                period=draw(st.sampled_from([15, 30])),
-                first=draw(st.integers(0, 6)),
-                jitter=draw(st.integers(0, 2)),
-                demands=((shortest, shortest + draw(st.integers(0, 2))),),
-            )
-        )
-    return found
+def streams(draw, shortest=(1, 4), periods=(15, 30)):
+    least = draw(st.integers(*shortest))
+    return JobStream(
+        period=draw(st.sampled_from(periods)),
+        first=draw(st.integers(0, 6)),
+        jitter=draw(st.integers(0, 2)),
+        demands=((least, least + draw(st.integers(0, 2))),),
+    )
 
 
-def played(streams):
+#: Jobs that are long for their distance in time, so that they meet on several cores.
+LONG_STREAMS = streams((3, 9), (30,))
+
+
+def played(streams, cores=1):
     """The latest end of a job of each task after its earliest release: each combination of releases and execution times of 30 units."""
     jobs = [(task, stream.first + start) for task, stream in enumerate(streams) for start in range(0, 30, stream.period)]
     late = [range(streams[task].jitter + 1) for task, _ in jobs]
@@ -73,22 +91,30 @@ def played(streams):
     latest = [0] * len(streams)
     for delays, executed in product(product(*late), product(*costs)):
         left = {index: earliest + delays[index] for index, (_, earliest) in enumerate(jobs)}
-        now = 0
+        free = [0] * cores
         while left:
-            now = max(now, min(left.values()))
+            now = max(min(free), min(left.values()))
             # Jobs are sorted by priority, then by release.
             index = min(index for index, release in left.items() if release <= now)
             del left[index]
-            now += executed[index]
+            end = now + executed[index]
+            free[free.index(min(free))] = end
             task, earliest = jobs[index]
-            latest[task] = max(latest[task], now - earliest)
+            latest[task] = max(latest[task], end - earliest)
     return latest
 
 
 @examples(16)
-@given(streams())
+@given(st.lists(streams(), min_size=2, max_size=3))
 def test_the_latest_end_is_that_of_the_worst_combination(streams):
     assert [ends.latest for ends in explored(streams)] == played(streams)
+
+
+@examples(16)
+@given(st.lists(LONG_STREAMS, min_size=3, max_size=5), st.integers(2, 3))
+def test_no_combination_is_later_than_the_latest_end_on_several_cores(streams, cores):
+    found = [ends.latest for ends in explored(streams, cores)]
+    assert all(map(le, played(streams, cores), found))
 
 
 def test_an_exploration_that_takes_too_many_steps_has_no_result():

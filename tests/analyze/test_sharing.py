@@ -59,7 +59,7 @@ def play(tasks, offsets, until, serves=lambda _: True, tie=1):
                 job = min(level, key=lambda job: (job[0], tie * job[1]))
             case EqualPriority.EDF:
                 job = min(level, key=lambda job: (job[0] + tasks[job[1]].deadline, tie * job[1], job[0]))
-            case EqualPriority.ROUND_ROBIN:
+            case EqualPriority.ROUND_ROBIN | EqualPriority.TIME_SLICES:
                 first = next(index for index in turn if any(job[1] == index for job in level))
                 job = min(job for job in level if job[1] == first)
             case EqualPriority.UNKNOWN:
@@ -69,7 +69,7 @@ def play(tasks, offsets, until, serves=lambda _: True, tie=1):
         if job[2] == 0:
             waiting.remove(job)
             worst[job[1]] = max(worst[job[1]], now + 1 - job[0])
-        if tasks[job[1]].equal_priority is EqualPriority.ROUND_ROBIN:
+        if tasks[job[1]].equal_priority in (EqualPriority.ROUND_ROBIN, EqualPriority.TIME_SLICES):
             used += 1
             is_done = not any(other[1] == job[1] for other in waiting)
             if used == tasks[job[1]].slice or is_done:
@@ -95,8 +95,45 @@ def test_no_schedule_is_worse_than_the_bound(equal_priority, rows, above, offset
     tasks = shared(equal_priority, rows, above)
     assume(load(tasks) <= 1)
     for seen, response in zip(play(tasks, offsets, 96), priority_levels.response_times(tasks), strict=True):
-        assert seen <= response.worst
-        assert sum(response.terms.values()) == response.worst
+        if equal_priority is EqualPriority.TIME_SLICES and response.worst is None:
+            assert response.reason
+            assert not response.is_overload
+        else:
+            assert seen <= response.worst
+            assert sum(response.terms.values()) == response.worst
+
+
+def play_division(tasks, offsets, phase, until):
+    """The longest response time of each task if a slice that its task does not need is lost."""
+    slots = [index for index, task in enumerate(tasks) for _ in range(task.slice)]
+    waiting, worst = [[] for _ in tasks], [0] * len(tasks)
+    for now in range(until):
+        for jobs, task, offset in zip(waiting, tasks, offsets, strict=False):
+            if now >= offset and (now - offset) % task.events.period == 0:
+                jobs.append([now, task.demand.worst])
+        owner = slots[(now + phase) % len(slots)]
+        if waiting[owner]:
+            waiting[owner][0][1] -= 1
+            if not waiting[owner][0][1]:
+                worst[owner] = max(worst[owner], now + 1 - waiting[owner].pop(0)[0])
+    return worst
+
+
+@given(
+    rows=st.lists(st.tuples(st.sampled_from([8, 12, 24]), st.integers(1, 4), st.integers(1, 4)), min_size=2, max_size=3),
+    offsets=OFFSETS,
+    phase=st.integers(0, 11),
+)
+@example(rows=[(24, 4, 2), (24, 1, 3)], offsets=[2, 0, 0, 0], phase=0)  # just after its slice: two slices of 3 before the end
+def test_no_division_of_time_is_worse_than_the_bound(rows, offsets, phase):
+    tasks = shared(EqualPriority.TIME_SLICES, rows)
+    for seen, response in zip(play_division(tasks, offsets, phase, 96), priority_levels.response_times(tasks), strict=True):
+        assert response.worst is None or seen <= response.worst
+
+
+def test_a_division_of_time_reaches_the_bound():
+    tasks = shared(EqualPriority.TIME_SLICES, [(24, 4, 2), (24, 1, 3)])
+    assert play_division(tasks, [2, 0], 0, 96)[0] == priority_levels.response_times(tasks)[0].worst == 4 + 2 * 3
 
 
 @pytest.mark.parametrize("equal_priority", [EqualPriority.FIFO, EqualPriority.EDF])
@@ -137,7 +174,7 @@ def test_no_schedule_of_a_server_is_worse_than_the_bound(rows, offsets, budget, 
 def test_overload_has_a_reason(equal_priority):
     first, _ = priority_levels.response_times(shared(equal_priority, [(10, 6, 5), (10, 5, 5)]))
     assert first.worst is None
-    assert "110.0 %" in first.reason
+    assert ("time slices" if equal_priority is EqualPriority.TIME_SLICES else "110.0 %") in first.reason
 
 
 # Round robin against an independent player that goes from unit to unit, under all readings of what the standard leaves open.

@@ -65,5 +65,9 @@ def test_the_figures_of_the_page():
     proposed = re.search(r"analysis of (\d+) of these files ends, (\d+) processes .*; they state (\d+) values", page)
     assert proposed is not None
     assert not IS_THOROUGH or tuple(map(int, proposed.groups())) == (found.commands, found.bounded + found.gained, found.stated)
+    every = re.search(r"Of all (\d+) models with\s+processes, .* the analysis of (\d+) has", page)
+    assert every is not None
+    assert int(every[1]) == found.with_processes
+    assert not IS_THOROUGH or int(every[2]) == found.answered
     table = re.findall(r"^\| ([a-z][^|]*) \| \d+ \| (\d+) \| ", page, re.MULTILINE)
     assert {reason: int(number) for reason, number in table if int(number)} == kinds(found)

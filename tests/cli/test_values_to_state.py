@@ -6,6 +6,9 @@ import shlex
 from command import amuros
 from support import ROOT
 
+from amalthea_uros import build_model, save
+from amalthea_uros.perf.system import System
+
 LINE = "To get numbers, state"
 EXECUTOR = ROOT / "samples" / "executor.amxmi"
 
@@ -37,3 +40,9 @@ def known(path):
 
 def test_what_is_complete_has_no_such_lines():
     assert LINE not in amuros("analyze", EXECUTOR).stdout
+
+
+def test_a_model_without_tasks_asks_for_the_file_that_has_them(tmp_path):
+    model = tmp_path / "hardware.amxmi"
+    save(build_model(System()), model)
+    assert "which tasks there are: the model has none" in amuros("analyze", model).stdout

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from hand_made_systems import of_parts, ticks
+from hand_made_systems import of_parts, read, ticks, write
 
 from amalthea_uros import build_model, load, save
 from amalthea_uros.analyze.system import analyze_system
@@ -13,12 +13,12 @@ from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.design.missing_values import missing_values
-from amalthea_uros.perf.activities import Demand, Execute
+from amalthea_uros.perf.activities import Call, Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, Constant, Gauss, Uniform
 from amalthea_uros.perf.hardware import Hardware
 from amalthea_uros.perf.mapping import Mapping, TaskAllocation
 from amalthea_uros.perf.os import Os, Policy
-from amalthea_uros.perf.software import Task
+from amalthea_uros.perf.software import Isr, Label, Runnable, Task
 from amalthea_uros.perf.stimuli import Custom, Periodic, RelativePeriodic
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.changed_model import write_changed
@@ -52,6 +52,39 @@ def proposed(system):
 def test_what_is_missing_is_named_and_nothing_else():
     # As long as nobody knows where C is executed, it may delay A. Its priority is not needed: there is a bound for any order.
     assert proposed(SYSTEM) == ({"B.period", "C.scheduler"}, ("A", "B", "C"))
+
+
+def test_who_has_no_execution_time_is_given_one_in_what_it_calls_or_itself():
+    tasks = [
+        Task(name="A", stimuli=("tick",)),
+        Task(name="B", stimuli=("tick",), activities=(Call(runnable="R"), Call(runnable="S"))),
+    ]
+    allocations = [TaskAllocation(task=name, scheduler="core", priority=number) for number, name in enumerate("AB")]
+    passing = (read("label"), write("label"))
+    system = of_parts(
+        tasks,
+        allocations,
+        [Periodic(name="tick", period=MS)],
+        runnables=(Runnable(name="R", activities=passing), Runnable(name="S")),
+        labels=(Label(name="label"),),
+        frequency=10**9,
+    )
+    assert proposed(system) == ({"A.execution_time", "R.execution_time"}, ("A", "B"))
+    after, _ = apply(system, Settings(), missing_values_of(system).changes)
+    # It executes between reading and writing.
+    assert after.runnables["R"].activities == (passing[0], ticks(1000), passing[1])
+
+
+def test_a_new_execution_time_is_written(tmp_path):
+    system = of_parts(
+        [Task(name="A", stimuli=("tick",))],
+        [TaskAllocation(task="A", scheduler="core", priority=1)],
+        [Periodic(name="tick", period=MS)],
+        frequency=10**9,
+    )
+    model = build_model(system)
+    write_changed(model, missing_values_of(system).changes, Settings(), tmp_path / "new.amxmi")
+    assert extract(load(tmp_path / "new.amxmi")).system.processes["A"].activities == (ticks(1000),)
 
 
 def test_with_the_proposal_all_processes_have_a_response_time():
@@ -213,3 +246,13 @@ def test_the_times_of_a_network_and_of_an_agent_are_values_of_a_description(tmp_
     stated = analyze_files([tmp_path / "app.yaml"], changes=found.missing.changes, with_missing=True)
     assert all(handle.response.worst for executor in stated.analysis.executors for handle in executor.handles)
     assert stated.missing is None
+
+
+def test_an_interrupt_without_a_controller_is_given_a_core(tmp_path):
+    isr = Isr(name="I", stimuli=("tick",), activities=(ticks(1),))
+    system = replace(SYSTEM, software=replace(SYSTEM.software, tasks=SYSTEM.software.tasks[:1], isrs=(isr,)))
+    system = replace(system, mapping=replace(system.mapping, tasks=system.mapping.tasks[:1]))
+    # As long as nobody knows where it is executed, it may delay A.
+    assert proposed(system) == ({"I.core"}, ("A", "I"))
+    write_changed(build_model(system), missing_values_of(system).changes, Settings(), tmp_path / "new.amxmi")
+    assert [each.cores for each in extract(load(tmp_path / "new.amxmi")).system.interrupt_controllers.values()] == [("core",)]

@@ -183,7 +183,7 @@ class Blocking:
         match item.equal_priority:
             case EqualPriority.UNKNOWN:
                 return True
-            case EqualPriority.ROUND_ROBIN:
+            case EqualPriority.ROUND_ROBIN | EqualPriority.TIME_SLICES:
                 # A task that cannot be preempted keeps the core for longer than its slice.
                 return rank < item.rank or any(map(self.keeps_off_others, together))
             case EqualPriority.EDF:

@@ -16,6 +16,7 @@ from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.analyze.response_times.waits import beside_waits, shorter_by_segments
 from amalthea_uros.perf.os import Policy
 from amalthea_uros.perf.software import Preemption
+from amalthea_uros.timing.activation.releases import RELEASES
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
@@ -30,7 +31,7 @@ def responses_on(core: str, solution: Solution) -> dict[str, Response]:
     time_base = solution.context.demand_model.time_base(core)
     schedule = _new_schedule(core, solution)
     if schedule is not None:
-        solution.context.notes.assume("periodic tasks are released at their offsets; the default offset is 0")
+        solution.context.notes.assume(RELEASES)
         found = schedule.response_times()
     else:
         found = _CoreAnalysis(solution, core).responses(None, FULL)
@@ -92,7 +93,9 @@ class _CoreAnalysis:
             processes = (item for item in level if isinstance(item, ScheduledProcess))
             unknown = [item for item in processes if not self.solution.is_analysable(item.name)]
             for item in level:
-                beside = (other.name for other in unknown if not blocking.is_below(other, item))
+                beside = (
+                    other.name for other in unknown if not blocking.is_below(other, item) and not _is_apart(item, blocking)
+                )
                 if cause := above or next(beside, None):
                     self._mark_unknown(item, f"depends on {cause!r}, which could not be analysed")
                     delayed.add(item.name)
@@ -209,12 +212,13 @@ class _CoreAnalysis:
         if any(item.equal_priority is EqualPriority.UNKNOWN for item in usable):
             notes.assume(fixed_priority.ASSUMPTION)
         decisions = AnalysedTask.of_decisions(self.core, self.solution, len(ranks)) if supply is FULL else []
+        decisions += self._sliced_unknown(usable, ranks)
         found = priority_levels.response_times([*tasks, *decisions], [*waits, *[0] * len(decisions)], supply)
         for index, item in enumerate(usable):
             window = BlockedWindow(notes, self.time_base, blocking, usable, [*tasks, *decisions], waits[index], supply)
             found[index] = window.response(index, item, found[index])
         for index, item in enumerate(usable):
-            if found[index].worst is None and isinstance(item, ScheduledProcess):
+            if found[index].worst is None and isinstance(item, ScheduledProcess) and not _is_apart(item, blocking):
                 rank = blocking.level(item).rank
                 level = [task for task, other in zip(tasks, usable, strict=False) if other.rank >= rank]
                 merged = self._with_longest_paths([*level, *decisions])
@@ -225,6 +229,14 @@ class _CoreAnalysis:
         if self.context.has_waits(self.core):
             bounds = self._beside_waits(bounds, tasks)
         return [self._without_iterations(item, response) for item, response in zip(usable, bounds, strict=True)]
+
+    def _sliced_unknown(self, usable: Sequence[ScheduledProcess | Server], ranks: Sequence[Rank]) -> Iterator[AnalysedTask]:
+        """The unknown processes of which others only need to know the time slice."""
+        known = {item.name for item in usable}
+        for item in self.context.on_core(self.core):
+            if item.equal_priority is EqualPriority.TIME_SLICES and item.rank in ranks and item.name not in known:
+                length = item.slice * self.time_base
+                yield self._scheduled(item, ranks, PeriodicEvents(length), MultiframeDemand.constant(Ticks(length)))
 
     def _beside_waits(self, bounds: Sequence[Response], tasks: Sequence[AnalysedTask]) -> list[Response]:
         """The response times on a core with processes that wait for events, which is one without servers and blocking."""
@@ -269,11 +281,16 @@ class _CoreAnalysis:
             demand = MultiframeDemand.constant(to_ticks(item.budget, self.time_base), best=Ticks(0))
         else:
             events, demand = self.solution.event_models[item.name], self.context.demands[item.name]
+        return self._scheduled(item, ranks, rescaled(events, self.time_base), demand)
+
+    def _scheduled(
+        self, item: ScheduledProcess | Server, ranks: Sequence[Rank], events: EventModel, demand: MultiframeDemand
+    ) -> AnalysedTask:
         # Who is resumed need not precede those of its priority that came later.
-        has_order = not self.context.has_waits(self.core)
+        has_order = not self.context.has_waits(self.core) or item.equal_priority is EqualPriority.TIME_SLICES
         return AnalysedTask(
             name=item.name,
-            events=rescaled(events, self.time_base),
+            events=events,
             demand=demand,
             priority=ranks.index(item.rank),
             equal_priority=item.equal_priority if has_order else EqualPriority.UNKNOWN,
@@ -283,6 +300,11 @@ class _CoreAnalysis:
             activation_limit=getattr(item.process, "activation_limit", 1) if isinstance(item, ScheduledProcess) else 1,
             is_alone=item.name in self.context.awaited_alone,
         )
+
+
+def _is_apart(item: ScheduledProcess | Server, blocking: Blocking) -> bool:
+    """Whether those of its rank delay a process by their time slices only."""
+    return item.equal_priority is EqualPriority.TIME_SLICES and not blocking.is_possible
 
 
 def in_picoseconds(response: Response, time_base: int) -> Response:

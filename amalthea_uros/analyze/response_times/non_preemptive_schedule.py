@@ -16,7 +16,7 @@ from amalthea_uros.analyze.response_times.schedule_abstraction import JobEnds, J
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.perf.activities import SchedulePoint
 from amalthea_uros.perf.software import Preemption, Task
-from amalthea_uros.timing.activation.releases import releases_with_jitter
+from amalthea_uros.timing.activation.releases import JitteredReleases, releases_with_jitter
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.response import Claim, Response
@@ -85,16 +85,20 @@ def _tasks(core: str, solution: Solution) -> Sequence[_UnpreemptedTask]:
         if releases is None or not _is_never_preempted(item, solution):
             return ()
         demand = context.demands[item.name]
-        worst = demand_table(demand, MultiframeDemand.worst_of)
-        jobs = JobStream(
-            period=releases.period * time_base,
-            first=releases.earliest * time_base,
-            jitter=releases.jitter * time_base,
-            demands=tuple(zip(demand_table(demand, MultiframeDemand.best_of), worst, strict=True)),
-            lead=len(worst) - demand_cycle(demand),
-        )
-        found.append(_UnpreemptedTask(name=item.name, jobs=jobs, demand=demand))
+        found.append(_UnpreemptedTask(name=item.name, jobs=job_stream(releases, demand, time_base), demand=demand))
     return found
+
+
+def job_stream(releases: JitteredReleases, demand: MultiframeDemand, time_base: int) -> JobStream:
+    """The jobs of a task in the time base of its core."""
+    worst = demand_table(demand, MultiframeDemand.worst_of)
+    return JobStream(
+        period=releases.period * time_base,
+        first=releases.earliest * time_base,
+        jitter=releases.jitter * time_base,
+        demands=tuple(zip(demand_table(demand, MultiframeDemand.best_of), worst, strict=True)),
+        lead=len(worst) - demand_cycle(demand),
+    )
 
 
 def _is_never_preempted(item: ScheduledProcess, solution: Solution) -> bool:

@@ -31,6 +31,7 @@ METHODS: Mapping[EqualPriority, Callable[[AnalysedTask, Sequence[AnalysedTask], 
     EqualPriority.FIFO: partial(edf.response_time, method=edf.FIFO_METHOD),
     EqualPriority.EDF: edf.response_time,
     EqualPriority.ROUND_ROBIN: round_robin.response_time,
+    EqualPriority.TIME_SLICES: round_robin.in_slices,
     EqualPriority.UNKNOWN: fixed_priority.in_any_order,
 }
 
@@ -99,6 +100,9 @@ class BlockedWindow:
             return plain
         if isinstance(item, Server):
             return self._of_budget(index, item, plain)
+        if item.equal_priority is EqualPriority.TIME_SLICES:
+            reason = "what cannot be preempted everywhere may prolong time slices on its core"
+            return replace(plain, worst=None, completions=(), terms={}, reason=reason)
         level = self.blocking.level(item)
         task = self.tasks[index]
         higher = self._of_level(index, level.rank)

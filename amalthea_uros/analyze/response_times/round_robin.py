@@ -6,6 +6,9 @@ no more than its demand. Three things are taken into account beyond that. A job 
 others can have jobs pending when the task is activated, so that their demand is that of the busy window of all of them; each of these
 jobs, as many as the activation limit allows, may wait for a slice of its own, since it is not standardised whether jobs or tasks take
 turns. Neither is it whether a slice that was preempted starts anew, so that each preemption may prolong a slice of another task.
+
+If only the slices are known, each task gets one in a cycle of all of them, and one that it leaves unused may be lost, as in time
+division. Then the others are taken to use all of their slices, so that nothing else has to be known of them.
 """
 
 from __future__ import annotations
@@ -13,16 +16,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, of_completions, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
-from amalthea_uros.timing.basics.time_base import LIMIT
+from amalthea_uros.timing.basics.time_base import LIMIT, Ticks
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 
 METHOD = "busy window, round robin"
+SLICES = "busy window, time slices"
 SOURCE = "Racu, Li, Henia, Hamann, Ernst 2007"
 
 
@@ -38,7 +44,8 @@ def response_time(task: AnalysedTask, others: Sequence[AnalysedTask], higher: In
     window = _Window.of(task, others, higher, blocking)
     completions: list[Time] = []
     end = 0
-    for job in range(1, max_jobs(task) if window.is_bounded else 1):
+    # A window that ends with its first job is bounded, even if others need not end.
+    for job in range(1, max_jobs(task) if window.is_bounded else 2):
         end = window.end(job, end)
         if end > LIMIT:
             break
@@ -47,6 +54,22 @@ def response_time(task: AnalysedTask, others: Sequence[AnalysedTask], higher: In
             return of_completions(task, completions, blocking, METHOD, SOURCE)
     reason = "its busy window does not end: the tasks need all of the core"
     return Response(worst=None, best=task.demand.best, method=METHOD, source=SOURCE, reason=reason)
+
+
+def in_slices(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference, blocking: Time = 0) -> Response:
+    """The response time if the others may use all of their slices, or leave them unused without anybody else using them."""
+    if higher.tasks:
+        reason = "what precedes it may take a part of its time slices"
+        return Response(worst=None, best=task.demand.best, method=SLICES, source=SOURCE, reason=reason)
+    found = response_time(task, [_with_all_slices(other) for other in others], higher, blocking)
+    if found.worst is None:
+        found = replace(found, is_overload=False, reason="the time slices of the others leave it too little time")
+    return replace(found, method=SLICES)
+
+
+def _with_all_slices(task: AnalysedTask) -> AnalysedTask:
+    """A task that always has a job pending."""
+    return replace(task, demand=MultiframeDemand.constant(Ticks(task.slice)), events=PeriodicEvents(task.slice))
 
 
 def _overloads(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference) -> bool:

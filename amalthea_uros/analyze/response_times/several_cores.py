@@ -1,4 +1,6 @@
-"""Response times of tasks that any core of their scheduler executes, by fixed priorities with preemption and migration.
+"""Response times of tasks that any core of their scheduler executes, by fixed priorities.
+
+If nothing is preempted, `non_preemptive_cores` has the method. The rest is about tasks that are preempted at once, and migrate.
 
 M. Bertogna and M. Cirinei, "Response-time analysis for globally scheduled symmetric multiprocessor platforms", RTSS 2007: a job of a
 task k that has not ended after L has been kept from all m cores for more than L - C_k, so that
@@ -19,11 +21,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.analyze.response_times import non_preemptive_cores
 from amalthea_uros.analyze.response_times.core import in_picoseconds
+from amalthea_uros.analyze.response_times.non_preemptive_schedule import ASSUMPTION as CONSTANT_TIMES
+from amalthea_uros.analyze.response_times.non_preemptive_schedule import job_stream
+from amalthea_uros.analyze.response_times.schedule_abstraction import JobStream
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.perf.activities import SchedulePoint
 from amalthea_uros.perf.software import Preemption, Task
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
-from amalthea_uros.timing.activation.releases import response_time_limits
+from amalthea_uros.timing.activation.releases import RELEASES, releases_with_jitter, response_time_limits
 from amalthea_uros.timing.basics.notes import AnalysisNotes
 from amalthea_uros.timing.basics.time_base import MAX_INPUT
 from amalthea_uros.timing.blocking.critical_sections import LockUsage
@@ -50,6 +57,7 @@ class MigratingTask:
     Attributes
     ----------
     distance : the least time between two activations
+    jobs : if none of them is ever preempted
     """
 
     name: str
@@ -57,6 +65,7 @@ class MigratingTask:
     demand: MultiframeDemand
     events: EventModel
     distance: Time
+    jobs: JobStream | None = None
 
     @property
     def longest(self) -> Time:
@@ -96,10 +105,12 @@ def responses_on_several_cores(context: TimingContext) -> dict[str, MigratingRes
         except UnknownError as error:
             context.notes.warning("ANA002", f"tasks of the scheduler {scheduler.name!r} are not analysed: {error}", scheduler)
             continue
-        if tasks:
-            context.notes.assume(ASSUMPTION)
-        time_base = context.demand_model.time_base(scheduler.cores[0])
-        for task, response in zip(tasks, response_times(tasks, len(set(scheduler.cores))), strict=True):
+        cores, time_base = len(set(scheduler.cores)), context.demand_model.time_base(scheduler.cores[0])
+        streams = [task.jobs for task in tasks if task.jobs is not None]
+        found = non_preemptive_cores.response_times(streams, cores) if streams else response_times(tasks, cores)
+        for assumption in (RELEASES, CONSTANT_TIMES) if streams else (ASSUMPTION,) if tasks else ():
+            context.notes.assume(assumption)
+        for task, response in zip(tasks, found, strict=True):
             results[task.name] = MigratingResult(in_picoseconds(response, time_base), task.demand, task.events, time_base)
     return results
 
@@ -135,10 +146,12 @@ def _tasks(name: str, context: TimingContext) -> Sequence[MigratingTask]:
     for each in allocations:
         item = order.on_any_core(each)
         if item.equal_priority is not EqualPriority.FIFO or item.group is not None or item.server is not None:
-            raise UnknownError("it does not schedule all of its tasks by fixed priorities with preemption")
+            raise UnknownError("it does not schedule all of its tasks by fixed priorities")
         tasks.append(_task(item.process, item.rank, sorted(cores), context))
     if len({task.rank for task in tasks}) < len(tasks):
         raise UnknownError("some of its tasks share a priority")
+    if len({task.jobs is None for task in tasks}) > 1:
+        raise UnknownError("some of its tasks are preempted, and others are not")
     return sorted(tasks, key=lambda task: task.rank, reverse=True)
 
 
@@ -146,7 +159,8 @@ def _task(process: object, rank: Rank, cores: Sequence[str], context: TimingCont
     """A task of which each job ends alone; raises as `_tasks`."""
     assert isinstance(process, Task)
     name, model = process.name, context.demand_model
-    if process.preemption is not Preemption.PREEMPTIVE or context.touching.protection[name] != LockUsage():
+    is_preempted = process.preemption is Preemption.PREEMPTIVE
+    if not (is_preempted or _is_never_preempted(process, context)) or context.touching.protection[name] != LockUsage():
         raise UnknownError(f"{name!r} cannot be preempted everywhere")
     if name in context.system.executor_of_task or name in context.unknown_demands:
         raise UnknownError(f"{name!r} does not only execute what its activities say")
@@ -162,7 +176,16 @@ def _task(process: object, rank: Rank, cores: Sequence[str], context: TimingCont
     distance = events.delta_min(2) if isinstance(events, PeriodicEvents) else 0
     if not distance:
         raise UnknownError(f"{name!r} has no least time between two activations")
-    return MigratingTask(name, rank, demands[0], events, distance * model.time_base(cores[0]))
+    time_base, releases = model.time_base(cores[0]), releases_with_jitter(process, context.system)
+    if is_preempted:
+        return MigratingTask(name, rank, demands[0], events, distance * time_base)
+    if releases is None:
+        raise UnknownError(f"{name!r} is not preempted, and when it is activated is unknown")
+    return MigratingTask(name, rank, demands[0], events, distance * time_base, job_stream(releases, demands[0], time_base))
+
+
+def _is_never_preempted(task: Task, context: TimingContext) -> bool:
+    return task.preemption is Preemption.NON_PREEMPTIVE and SchedulePoint not in context.system.activity_classes
 
 
 def response_times(tasks: Sequence[MigratingTask], cores: int) -> Iterator[Response]:

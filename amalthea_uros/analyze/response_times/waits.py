@@ -114,7 +114,7 @@ def _longest(name: str, awaited: AwaitedEvent, solution: Solution, responses: Ma
     if response is None:
         return awaited.gap or 0
     if response.worst is None:
-        raise UnknownError(f"{waits}, and that has no bounded response time")
+        raise UnknownError(f"{waits}, and that has no bounded response time: {response.reason}")
     if _can_lose(name, awaited, solution, responses):
         longest = rounded_time_text(response.worst, Rounding.UP)
         raise UnknownError(f"{waits} after up to {longest}, so that activations may be lost")

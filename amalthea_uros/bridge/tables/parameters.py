@@ -194,6 +194,8 @@ class SchedulingDefinitions:
             value = parameter.values[0] if len(parameter.values) == 1 else None
             if is_holder and parameter.name in _BUDGETS and isinstance(value, Duration):
                 setattr(found, _BUDGETS[parameter.name], build_time(value.time))
+            elif is_holder and isinstance(value, str):
+                element.parameter_extensions.append(am.ParameterExtension(key=parameter.name, value=value))
             else:
                 self._refuse_old(item, parameter.name)
         if given.deadline is not None:
@@ -258,6 +260,9 @@ def _stated(element: Any, context: Extracting) -> Iterable[tuple[str, tuple[Para
             yield key, values
         else:
             context.note("EXT004", "SchedulingParameter ignored: it has no key or no value", element)
+    for extension in getattr(element, "parameter_extensions", ()):
+        if extension.key and extension.value:
+            yield extension.key, (extension.value,)
 
 
 def _stated_before(stated: am.SchedulingParameters) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:

@@ -71,8 +71,11 @@ def _order(change: Change) -> int:
 
 
 def _changed(configuration: Configuration, change: Change) -> Configuration:
-    errors = []
-    for key in _keys(configuration.system, change.object, change.key):
+    errors, keys = [], list(_keys(configuration.system, change.object, change.key))
+    if len(keys) > 1:
+        # Of several objects with the name, one that states a value is meant.
+        keys.sort(key=lambda each: each.show(configuration, change.object) == UNSET)
+    for key in keys:
         try:
             return key.set(configuration, change.object, key.parse(change.value))
         except ValueError as error:

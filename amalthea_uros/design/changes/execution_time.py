@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from itertools import takewhile
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Collection, Configuration, Key, duration
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import listed
-from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, ExecutionNeed, transformed, walk
+from amalthea_uros.perf.activities import (
+    AccessKind,
+    Activity,
+    Call,
+    Demand,
+    Execute,
+    ExecutionNeed,
+    LabelAccess,
+    transformed,
+    walk,
+)
 from amalthea_uros.perf.distributions import Boundaries, Constant, Distribution, Sampling, highest, lowest
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
@@ -117,7 +128,7 @@ def _set_runnable(configuration: Configuration, name: str, time: ExecutionTime) 
 def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -> Configuration:
     """Change the demand of a process itself, or else of the only runnable that it executes and nobody else does.
 
-    Overheads of the operating system stay as they are.
+    Overheads of the operating system stay as they are. A process that does nothing gets a demand.
     """
     system = configuration.system
     process = system.processes[name]
@@ -131,22 +142,20 @@ def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -
     match _demands(walk(process.activities)), runnables:
         case [], [runnable] if _callers(runnable, system) == [name]:
             return _with_demand(configuration, RUNNABLES, runnable, distribution)
-        case [_, *_], []:
+        case own, [] if own or not called:
             return _with_demand(configuration, TASKS if isinstance(process, Task) else ISRS, name, distribution)
-    if not runnables:
-        raise InvalidArgumentError(f"{name!r} executes nothing that has an execution time")
-    choices = listed([f"{each}.execution_time" for each in runnables])
+    choices = listed([f"{each}.execution_time" for each in runnables or sorted(called)])
     raise InvalidArgumentError(f"{name!r} has no single execution time of its own; change those of its runnables: {choices}")
 
 
 def _with_demand(configuration: Configuration, place: Collection, name: str, ticks: Distribution[int]) -> Configuration:
-    """The configuration in which the only demand of a process or runnable is another one."""
+    """The configuration in which the only demand of a process or runnable is another one, or a new one between reading and writing."""
     activities = place.find(configuration.system, name).activities
-    if (count := len(_demands(walk(activities)))) != 1:
-        reason = (
-            f"contains {count} execution times, so it is not clear which one to change" if count else "has no execution time"
-        )
-        raise InvalidArgumentError(f"{name!r} {reason}")
+    if not (count := len(_demands(walk(activities)))):
+        reads = len(list(takewhile(_is_read, activities)))
+        activities = (*activities[:reads], Execute(demand=Demand()), *activities[reads:])
+    elif count > 1:
+        raise InvalidArgumentError(f"{name!r} contains {count} execution times, so it is not clear which one to change")
 
     def changed(activity: Activity) -> Activity:
         if isinstance(activity, Execute | ExecutionNeed):
@@ -155,6 +164,10 @@ def _with_demand(configuration: Configuration, place: Collection, name: str, tic
 
     fields = {"activities": transformed(activities, changed)}
     return configuration._replace(system=place.with_fields(configuration.system, name, **fields))
+
+
+def _is_read(activity: Activity) -> bool:
+    return isinstance(activity, LabelAccess) and activity.kind is AccessKind.READ
 
 
 def _frequency(name: str, processes: Iterable[str], configuration: Configuration) -> Frequency:

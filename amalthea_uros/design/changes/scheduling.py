@@ -22,7 +22,7 @@ from amalthea_uros.design.changes.key import (
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.mapping import IsrAllocation, TaskAllocation
-from amalthea_uros.perf.os import SERVERS, OperatingSystem, Parameter, Parent, Policy, Scheduler
+from amalthea_uros.perf.os import SERVERS, InterruptController, OperatingSystem, Parameter, Parent, Policy, Scheduler
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.scheduling.allocation import allocated_cores, scheduler_cores, standard_policy
 from amalthea_uros.timing.scheduling.ranks import ANALYSED, CAPACITY, PERIOD, TIME_SLICE
@@ -39,7 +39,7 @@ class _Dispatchers:
     field : of an allocation, with the name of what dispatches the process; also the name of the key
     names : of those in a system
     cores : those for which one is responsible
-    has_affinity : whether an allocation can select one of several cores
+    has_affinity : whether an allocation can select one of several cores; controllers are added for cores without one
     """
 
     kind: str
@@ -79,6 +79,9 @@ class _Dispatchers:
         system = configuration.system
         present = self._present(system, process)
         require("core", [core], system.cores)
+        if not self.has_affinity and not any(core in self.cores(each, system) for each in self.names(system)):
+            system = _with_controller(system, core)
+            configuration = configuration._replace(system=system)
         responsible = [each for each in self.names(system) if self._can_select(each, core, system)]
         name = present if present is not None and present in responsible else self._only(responsible, process, core)
         return self._mapped(configuration, process, name, (core,) if len(self.cores(name, system)) > 1 else ())
@@ -269,6 +272,13 @@ def _set_core_policy(configuration: Configuration, core: str, policy: str) -> Co
     name = unused(f"{core}_scheduler", (*system.schedulers, *(each.name for each in system.os.systems)))
     added = OperatingSystem(name=name, schedulers=(Scheduler(name=name, policy=policy, cores=(core,), executing_core=core),))
     return configuration._replace(system=OPERATING_SYSTEMS.with_item(system, added))
+
+
+def _with_controller(system: System, core: str) -> System:
+    """The system with an interrupt controller of a core, in an operating system of its own."""
+    name = unused(f"{core}_interrupts", (*system.interrupt_controllers, *(each.name for each in system.os.systems)))
+    controller = InterruptController(name=name, cores=(core,), executing_core=core)
+    return OPERATING_SYSTEMS.with_item(system, OperatingSystem(name=name, interrupt_controllers=(controller,)))
 
 
 TASK_KEYS: Mapping[str, Key[Any]] = {**_DISPATCHED_TASK_KEYS, "time_slice": Key(positive_duration, _show_slice, _set_slice)}

@@ -193,7 +193,7 @@ def _is_separable(problem: Problem) -> bool:
     return len(context.scheduled) == len(system.processes) and all(
         is_preemptive(item)
         and item.server is None
-        and item.equal_priority not in (EqualPriority.ROUND_ROBIN, EqualPriority.UNKNOWN)
+        and item.equal_priority in (EqualPriority.FIFO, EqualPriority.EDF)
         and context.protection[item.name] == LockUsage()
         for item in context.scheduled.values()
     )

@@ -12,14 +12,17 @@ from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.services.analyze import AnalysisResult
 
 _HEADING = "To get numbers, state"
+_TOGETHER = "Files that belong together are given together, such as: amuros analyze software.amxmi hardware.amxmi mapping.amxmi"
+_NO_PROCESSES = f"which tasks there are: the model has none, and no interrupts. {_TOGETHER}"
 _NO_SCHEDULERS = (
-    "which scheduler executes each task, on which core: no scheduler of the model is responsible for a core. Files that belong "
-    "together are given together, such as: amuros analyze software.amxmi hardware.amxmi mapping.amxmi"
+    f"which scheduler executes each task, on which core: no scheduler of the model is responsible for a core. {_TOGETHER}"
 )
 
 
 def missing_section(result: AnalysisResult) -> Section:
     """The command to paste; empty if nothing is missing that can be stated."""
+    if not result.analysis.processes and any(path.suffix == ".amxmi" for path in result.paths):
+        return section(_HEADING, lines(_NO_PROCESSES))
     if result.missing is None:
         return section(_HEADING)
     unallocated = [lines(_NO_SCHEDULERS)] if result.missing.lacks_schedulers else []

@@ -174,7 +174,7 @@ class ProcessRecords:
             layout.IS_BY_DEADLINE: int(is_edf),
             layout.HAS_SERVER_DEADLINE: int(has_server_deadline),
             layout.RELATIVE_DEADLINE: self.resources.time(scheduled.deadline or 0) if is_edf else 0,
-            layout.SLICE: self.resources.time(scheduled.slice) if scheduled.equal_priority is EqualPriority.ROUND_ROBIN else 0,
+            layout.SLICE: self.resources.time(scheduled.slice),
             layout.SERVER: self.hardware.servers.get(scheduled.server or "", 0),
             layout.DECISION: self._decision(scheduler, core) if scheduler is not None else 0,
             layout.CAPTURES: captures,

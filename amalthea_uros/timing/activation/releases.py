@@ -31,6 +31,8 @@ from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time, time_text
 
+RELEASES = "periodic tasks are released at their offsets; the default offset is 0"
+
 
 def known_releases(process: Process, system: System) -> Periodic | None:
     """The stimulus of a process with known releases; None if they are unknown."""

@@ -1,8 +1,9 @@
 """The latency of accesses to labels and channels, by their memory and the access path.
 
 Each element of a path takes cycles of its own clock, and a connection those of the element before it; without a path, the access
-element gives the cycles of the core. The latency of the memory is added (help of APP4MC on the hardware model). If there is only a
-data rate, the size of the data is divided by the minimum rate. Accesses do not wait for those of other cores. If something of this is
+element gives the cycles of the core. The latency of the memory is added (help of APP4MC on the hardware model). With a data rate, the
+size of the data is divided by it. Whether that is instead of the cycles or besides them, where both are stated, is not standardised: an
+access takes at least the shorter of the two, and at most both. Accesses do not wait for those of other cores. If something of this is
 not stated, the demand of the process is unknown.
 """
 
@@ -123,14 +124,17 @@ class MemoryAccess:
 
 def _latency(latency: Latency, kind: AccessKind, frequency: Frequency | None, size: int | None, where: str) -> Times:
     cycles = latency.read if kind is AccessKind.READ else latency.write
-    if cycles is None and latency.rate:
-        if size is None or size < 0:
-            raise UnknownError(f"the size of data that pass {where!r} is {'unknown' if size is None else 'negative'}")
-        if latency.rate < 0:
-            raise UnknownError(f"the data rate of {where!r} is negative")
-        time = Fraction(size * SECOND, latency.rate)
+    if not latency.rate:
+        return _cycles(cycles, frequency, where)
+    if size is None or size < 0:
+        raise UnknownError(f"the size of data that pass {where!r} is {'unknown' if size is None else 'negative'}")
+    if latency.rate < 0:
+        raise UnknownError(f"the data rate of {where!r} is negative")
+    time = Fraction(size * SECOND, latency.rate)
+    if cycles is None:
         return (time, time, time)
-    return _cycles(cycles, frequency, where)
+    minimum, average, maximum = _cycles(cycles, frequency, where)
+    return (min(minimum, time), average + time, maximum + time)
 
 
 def _cycles(cycles: Distribution[int] | None, frequency: Frequency | None, where: str) -> Times:

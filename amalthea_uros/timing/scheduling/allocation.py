@@ -60,8 +60,8 @@ def deciding_scheduler(scheduler: str, system: System) -> Scheduler | None:
     return next((each for each in upwards(scheduler, system) if each.policy != Policy.GROUPING), None)
 
 
-def effective_priority(allocation: TaskAllocation, system: System) -> int | None:
-    """The priority of a task, or of its group; None if there is none."""
+def effective_priority(allocation: TaskAllocation | Parent, system: System) -> int | None:
+    """The priority of a task or scheduler, or of its group; None if there is none."""
     return _effective(allocation, system, lambda stated: stated.priority)
 
 
@@ -71,7 +71,7 @@ def effective_deadline(allocation: TaskAllocation, system: System) -> Time | Non
 
 
 def _effective(
-    allocation: TaskAllocation, system: System, value: Callable[[TaskAllocation | Parent], int | None]
+    allocation: TaskAllocation | Parent, system: System, value: Callable[[TaskAllocation | Parent], int | None]
 ) -> int | None:
     """A parameter of a task, or of the nearest group that has it."""
     groups = takewhile(lambda each: each.policy == Policy.GROUPING, upwards(allocation.scheduler, system))
@@ -101,6 +101,11 @@ def controller_of_core(system: System) -> dict[str, str]:
 def standard_policy(name: str | None) -> str | None:
     """The standard name of a policy; that of the model if it is none of these."""
     return _ALIASES.get((name or "").lower(), name)
+
+
+def is_without_meaning(policy: str | None) -> bool:
+    """Whether the name of a policy says nothing; migrated ones have a number."""
+    return policy is not None and policy.startswith("UserSpecificSchedulingAlgorithm")
 
 
 def is_by_priority(name: str | None) -> bool:

@@ -7,14 +7,16 @@ Processes below a server share its budget.
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Policy, Scheduler
+from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Parent, Policy, Scheduler
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.perf.system import System
@@ -24,6 +26,7 @@ from amalthea_uros.timing.scheduling.allocation import (
     deciding_scheduler,
     effective_deadline,
     effective_priority,
+    is_without_meaning,
     standard_policy,
 )
 from amalthea_uros.timing.scheduling.scheduled import (
@@ -34,7 +37,7 @@ from amalthea_uros.timing.scheduling.scheduled import (
     Server,
     StatedPlace,
 )
-from amalthea_uros.units import Duration, Time
+from amalthea_uros.units import Duration, Time, parse_duration
 
 #: The parameter of OSEK schedulers, which is mandatory in APP4MC; 0 was the value of a task without group when it was an attribute
 #: (`osekTaskGroup`, until 0.8.0).
@@ -45,6 +48,8 @@ CAPACITY = ("capacity", "maxBudget")
 PERIOD = ("period", "replenishment")
 #: The parameter of round robin.
 TIME_SLICE = "timeSliceLength"
+#: Time slices as text, which models until 1.2 have beside the parameters of a policy of their own.
+_SLICE_AS_TEXT = re.compile(r"(extended: )?timeslice(length)?(_.+)?", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +96,8 @@ class SchedulingOrder:
     notes: AnalysisNotes
     limits: Mapping[str, Time] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
-    _served: Counter[str] = field(init=False, default_factory=Counter)
+    _served: defaultdict[str, list[TaskAllocation | Parent]] = field(init=False, default_factory=partial(defaultdict, list))
+    _with_priority: Counter[tuple[str, int | None]] = field(init=False, default_factory=Counter)
     _lacking: frozenset[str] | None = field(init=False, default=None)
     _roots_of: defaultdict[str, list[str]] = field(init=False, default_factory=partial(defaultdict, list))
 
@@ -156,7 +162,9 @@ class SchedulingOrder:
         if needed == _PRIORITY and parameters.priority is None and self._serves_one(scheduler):
             # Nothing competes with what is alone.
             parameters = replace(parameters, priority=0)
-        by_policy = _BY_POLICY.get(policy)
+        by_policy = _time_slices if self._states_slices(scheduler) else _BY_POLICY.get(policy)
+        if policy == Policy.PRIORITY_BASED_ROUND_ROBIN and not self._is_shared(scheduler, parameters.priority):
+            by_policy = _fixed_priority
         if by_policy is None:
             message = f"the policy {policy!r} of the scheduler {scheduler.name!r} cannot be analysed"
             self.notes.warning("ANA002", message, scheduler)
@@ -188,6 +196,19 @@ class SchedulingOrder:
             return OrderGap.OTHER_WITHOUT_DEADLINE if parameters.deadline else OrderGap.NO_DEADLINE
         return OrderGap.NO_PRIORITY if parameters.priority is None else OrderGap.OTHER_WITHOUT_PRIORITY
 
+    def _states_slices(self, scheduler: Scheduler) -> bool:
+        """Whether nothing is known of a policy but the time slice of each of its tasks."""
+        if not is_without_meaning(scheduler.policy) or scheduler.parent is not None or not self._serves_tasks(scheduler):
+            return False
+        here = self._tasks_below(scheduler)
+        if len(here) < 2 or not all(_slice(scheduler, each.parameters) for each in here):
+            return False
+        self.notes.assume(
+            f"under the policy {scheduler.policy!r} of {scheduler.name!r}, each task that is pending gets its time slice once in a "
+            "cycle of all of them"
+        )
+        return True
+
     def _place(self, scheduler: Scheduler, parameters: _Parameters) -> StatedPlace | None:
         """The stated place of a task in the order of its scheduler; None if it can have any place."""
         policy, priority, group = standard_policy(scheduler.policy), parameters.priority, parameters.of(scheduler, _GROUP)
@@ -198,9 +219,10 @@ class SchedulingOrder:
         if policy != Policy.OSEK or group in (None, _NO_GROUP):
             return StatedPlace(priority, priority)
         # Those of a grouping can be in its group.
-        here = [each for each in self.system.mapping.tasks if deciding_scheduler(each.scheduler, self.system) == scheduler]
         members = [
-            each for each in here if each.scheduler != scheduler.name or _of(scheduler, each.parameters, _GROUP) == group
+            each
+            for each in self._tasks_below(scheduler)
+            if each.scheduler != scheduler.name or _of(scheduler, each.parameters, _GROUP) == group
         ]
         known = [level for each in members if (level := effective_priority(each, self.system)) is not None]
         return StatedPlace(priority, max(known)) if len(known) == len(members) else None
@@ -208,8 +230,9 @@ class SchedulingOrder:
     def _incomplete(self) -> frozenset[str]:
         """The schedulers that decide for a task without the priority or the deadline that their policy needs."""
         if self._lacking is None:
-            pairs = ((deciding_scheduler(task.scheduler, self.system), task) for task in self.system.mapping.tasks)
-            self._lacking = frozenset(each.name for each, task in pairs if each is not None and self._lacks(task, each))
+            schedulers = self.system.schedulers.values()
+            lacking = (by for by in schedulers if any(self._lacks(task, by) for task in self._tasks_below(by)))
+            self._lacking = frozenset(by.name for by in lacking)
         return self._lacking
 
     def _lacks(self, task: TaskAllocation, scheduler: Scheduler) -> bool:
@@ -219,32 +242,28 @@ class SchedulingOrder:
             return not effective_deadline(task, self.system)
         return needed == _PRIORITY and effective_priority(task, self.system) is None
 
+    def _below(self, scheduler: Scheduler) -> Sequence[TaskAllocation | Parent]:
+        """The tasks and schedulers for which a scheduler decides; groupings decide nothing."""
+        if not self._served:
+            deciding = [each for each in self.system.schedulers.values() if standard_policy(each.policy) != Policy.GROUPING]
+            parents = [each.parent for each in deciding if each.parent is not None]
+            below: list[TaskAllocation | Parent] = [*self.system.mapping.tasks, *parents]
+            for each in below:
+                if (by := deciding_scheduler(each.scheduler, self.system)) is not None:
+                    self._served[by.name].append(each)
+                    self._with_priority[by.name, effective_priority(each, self.system)] += 1
+        return self._served[scheduler.name]
+
+    def _tasks_below(self, scheduler: Scheduler) -> Sequence[TaskAllocation]:
+        return [each for each in self._below(scheduler) if isinstance(each, TaskAllocation)]
+
     def _serves_tasks(self, scheduler: Scheduler) -> bool:
         """Whether a scheduler decides for no other scheduler that decides something itself."""
-        tasks = Counter(
-            deciding.name
-            for task in self.system.mapping.tasks
-            if (deciding := deciding_scheduler(task.scheduler, self.system)) is not None
-        )
-        return tasks[scheduler.name] == self._served[scheduler.name]
+        return len(self._tasks_below(scheduler)) == len(self._below(scheduler))
 
     def _serves_one(self, scheduler: Scheduler) -> bool:
-        """Whether a scheduler decides for a single task or scheduler; groupings decide nothing."""
-        if not self._served:
-            self._served = Counter(self._deciders())
-        return self._served[scheduler.name] == 1
-
-    def _deciders(self) -> Iterator[str]:
-        """The schedulers that decide for each task, and for each scheduler that decides something itself."""
-        below = [
-            other.parent.scheduler
-            for other in self.system.schedulers.values()
-            if other.parent is not None and standard_policy(other.policy) != Policy.GROUPING
-        ]
-        for name in (*below, *(task.scheduler for task in self.system.mapping.tasks)):
-            deciding = deciding_scheduler(name, self.system)
-            if deciding is not None:
-                yield deciding.name
+        """Whether a scheduler decides for a single task or scheduler."""
+        return len(self._below(scheduler)) == 1
 
     def _policy(self, scheduler: Scheduler) -> str | None:
         """The standard name of the policy of a scheduler."""
@@ -295,10 +314,7 @@ class SchedulingOrder:
         policy = standard_policy(parent.policy)
         if policy not in BY_PRIORITY and policy not in SERVERS:
             return False
-        children = [s for s in self.system.schedulers.values() if s.parent is not None and s.parent.scheduler == parent.name]
-        priorities = [child.parent.priority for child in children if child.parent is not None]
-        priorities += [task.priority for task in self.system.mapping.tasks if task.scheduler == parent.name]
-        return priorities.count(priority) > 1
+        return bool(self._below(parent)) and self._with_priority[parent.name, priority] > 1
 
     def _server(self, scheduler: Scheduler, above: tuple[str, ...]) -> Server:
         if scheduler.name not in self.servers:
@@ -360,6 +376,16 @@ class SchedulingOrder:
         return ScheduledProcess(process=process, core=controller.cores[0], is_isr=True, priority=priority, rank=rank)
 
 
+def _slice(scheduler: Scheduler, parameters: Sequence[Parameter]) -> Time | None:
+    """The time slice of a task; None if none is stated, or several."""
+    stated = _time(_of(scheduler, parameters, TIME_SLICE))
+    texts = [value for each in parameters if _SLICE_AS_TEXT.fullmatch(each.name) for value in each.values]
+    if stated is None and len(texts) == 1 and isinstance(texts[0], str):
+        with suppress(ValueError):
+            return parse_duration(texts[0])
+    return stated
+
+
 def _time(value: ParameterValue | None) -> Time | None:
     return value.time if isinstance(value, Duration) else None
 
@@ -389,8 +415,13 @@ def _osek(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext
 
 def _round_robin(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
     found = _fixed_priority(scheduler, parameters, base)
-    length = parameters.required(_time(parameters.of(scheduler, TIME_SLICE)), TIME_SLICE)
+    length = parameters.required(_slice(scheduler, parameters.parameters), TIME_SLICE)
     return replace(found, equal_priority=EqualPriority.ROUND_ROBIN, slice=length)
+
+
+def _time_slices(scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:
+    length = parameters.required(_slice(scheduler, parameters.parameters), TIME_SLICE)
+    return replace(base, rank=(*base.rank, 0), equal_priority=EqualPriority.TIME_SLICES, slice=length)
 
 
 def _deadline_monotonic(_scheduler: Scheduler, parameters: _Parameters, base: SchedulingContext) -> SchedulingContext:

@@ -19,6 +19,7 @@ class EqualPriority(StrEnum):
     FIFO = "first come, first served"
     EDF = "earliest deadline first"
     ROUND_ROBIN = "round robin"
+    TIME_SLICES = "time slices"
     UNKNOWN = "an order that is not stated"
 
 
@@ -57,7 +58,7 @@ class SchedulingContext:
     ----------
     server : whose budget it uses; None: it runs on the core itself
     rank : higher is served first
-    equal_priority, slice : how tasks of the same rank share the core
+    equal_priority, slice : how tasks of the same rank share the core; no slice: 0
     group : its members do not preempt each other
     order_gap : why the order among those of the same rank is unknown; None if it is known
     place : among those with an unknown order, where it is stated for some; None: it can have any place
