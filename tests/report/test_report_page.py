@@ -160,7 +160,9 @@ def test_a_distribution_of_one_value_is_a_sentence():
 
 
 def test_what_would_shorten_the_worst_chain_is_told_if_its_limit_is_missed():
-    shown = text(section(report(ADVANCED, changes={"factor-to-output.reaction": "10 ms"}, with_simulation=False).html, "chains"))
+    shown = text(
+        section(report(ADVANCED, changes={"factor-to-output.reaction": "10 ms"}, with_simulation=False).html, "chains")
+    )
     assert "What would shorten it" in shown
     assert "analysed, one at a time" in shown
 

@@ -36,7 +36,7 @@ MOST_CHAINS, _SHOWN_OF_HOPS = 6, 2
 
 
 def hops_section(content: ReportContent) -> Section | None:
-    """The hops of the worst chains, of each the latency with the tightest limit; of one whose limit is not met, what would shorten it."""
+    """The hops of the worst chains, of each the latency with the tightest limit; if that is not met, also what would shorten it."""
     chains = worst_chains(content.analysis)
     if not chains:
         return None
