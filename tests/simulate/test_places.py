@@ -1,4 +1,4 @@
-"""Machine code finds the numbers of the kernel by their address, so that no place may be outside of the memory or count from its end."""
+"""Machine code finds the numbers of the kernel by their address: no place may be outside of the memory, or count from its end."""
 
 import pytest
 from support import ROOT
@@ -14,11 +14,11 @@ class Guarded:
         self.numbers = numbers
 
     def __getitem__(self, place):
-        assert 0 <= place
+        assert place >= 0
         return self.numbers[place]
 
     def __setitem__(self, place, number):
-        assert 0 <= place
+        assert place >= 0
         self.numbers[place] = number
 
 

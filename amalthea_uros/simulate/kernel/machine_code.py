@@ -100,7 +100,7 @@ def compiled() -> CompiledKernel:
     }
     for namespace in namespaces.values():
         namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
-    names = {"__name__": __name__, "run_kernel": machine[run_kernel], "_numbers_of": _address()}
+    names = {"__name__": __name__, "run_kernel": namespaces[loop]["run_kernel"], "_numbers_of": _address()}
     kernel = FunctionType(_run.__code__, names, "run")
     # numba looks at the file of this function only, to see whether its machine code is out of date.
     kernel.__qualname__ = _name()
@@ -125,12 +125,12 @@ def _address() -> Any:
     from numba import types
     from numba.extending import intrinsic
 
-    @intrinsic  # type: ignore[misc]
+    @intrinsic
     def address(_context: Any, memory: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             return context.make_array(signature.args[0])(context, builder, arguments[0]).data
 
-        return types.CPointer(memory.dtype)(memory), generate
+        return types.CPointer(memory.dtype)(memory), generate  # type: ignore[no-untyped-call]
 
     return address
 
