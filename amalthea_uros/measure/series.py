@@ -23,7 +23,9 @@ _FEW = 100
 #: The percentiles that are computed where all values are known.
 PERCENTILES = (_MEDIAN, Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
 #: Each with its parts, and the least number of values of which it is computed.
-_PERCENTILES = [(each, each.numerator, each.denominator, 1 if each is _MEDIAN else int(1 / (1 - each)) + 1) for each in PERCENTILES]
+_PERCENTILES = [
+    (each, each.numerator, each.denominator, 1 if each is _MEDIAN else int(1 / (1 - each)) + 1) for each in PERCENTILES
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
