@@ -35,7 +35,7 @@ LINES = {
     "inchron": 535,
     "inchron_bridge": 3349,
     "judge": 595,
-    "measure": 1122,
+    "measure": 1124,
     "metamodel": 3291,
     "names": 17,
     "perf": 1742,
