@@ -30,11 +30,12 @@ def sums(values: Numbers) -> list[int]:
 
 
 def sums_of_squares(values: Numbers) -> list[int]:
-    """The sum of the squares of each row."""
-    found = [0] * values.shape[0]
-    for first in range(0, values.shape[1], _COLUMNS):
-        for shift, parts in _products(np.abs(values[:, first : first + _COLUMNS])):
-            found = [total + (int(more) << shift) for total, more in zip(found, parts, strict=True)]
+    """The sum of the squares of each row; many rows are those of times that do not vary."""
+    found, rows = [0] * values.shape[0], np.flatnonzero(values.any(axis=1))
+    for first in range(0, values.shape[1] if rows.size else 0, _COLUMNS):
+        for shift, parts in _products(np.abs(values[rows, first : first + _COLUMNS])):
+            for row, more in zip(rows.tolist(), parts.tolist(), strict=True):
+                found[row] += int(more) << shift
     return found
 
 

@@ -22,6 +22,10 @@ _MEDIAN = Fraction(1, 2)
 _FEW = 100
 #: The percentiles that are computed where all values are known.
 PERCENTILES = (_MEDIAN, Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
+#: Each with its parts, and the least number of values of which it is computed.
+_PERCENTILES = [
+    (each, each.numerator, each.denominator, 1 if each is _MEDIAN else int(1 / (1 - each)) + 1) for each in PERCENTILES
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,14 +73,14 @@ def statistics_of(values: Numbers) -> TimeStatistics:
     ordered, total, squares = _of_few(values) if len(values) <= _FEW else _of_many(values)
     count, first = len(ordered), int(ordered[0])
     percentiles = {
-        share: int(ordered[-(-share.numerator * count // share.denominator) - 1])
-        for share in PERCENTILES
-        if share is _MEDIAN or count * (share.denominator - share.numerator) > share.denominator
+        share: int(ordered[-(-numerator * count // denominator) - 1])
+        for share, numerator, denominator, least in _PERCENTILES
+        if count >= least
     }
     return TimeStatistics(
         count=count,
         min=first,
-        mean=first + Fraction(total, count),
+        mean=Fraction(first * count + total, count),
         max=int(ordered[-1]),
         variance=Fraction(squares * count - total * total, count * count),
         percentiles=percentiles,

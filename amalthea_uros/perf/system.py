@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, field, replace
-from amalthea_uros.perf.activities import Activity, LabelAccess, transformed, walk
+from amalthea_uros.perf.activities import Activity, LabelAccess, Trigger, transformed, walk
 from amalthea_uros.perf.constraints import Constraints
 from amalthea_uros.perf.events import Event, EventChain, Events
 from amalthea_uros.perf.executors import Executor
@@ -130,6 +130,12 @@ class System:
     def activity_classes(self) -> frozenset[type[Activity]]:
         """The classes of all activities in processes and runnables."""
         return frozenset(type(activity) for body in self.software.bodies for activity in walk(body))
+
+    @cached_property
+    def triggered(self) -> tuple[tuple[str, ...], ...]:
+        """The stimuli that each process and each runnable triggers, in order; without those that trigger none."""
+        found = (tuple(each.stimulus for each in walk(body) if isinstance(each, Trigger)) for body in self.software.bodies)
+        return tuple(filter(None, found))
 
     @cached_property
     def labels(self) -> Mapping[str, Label]:

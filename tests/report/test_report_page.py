@@ -159,10 +159,17 @@ def test_a_distribution_of_one_value_is_a_sentence():
     assert "The response time of Message_Factor was 18 us in all" in text(shown)
 
 
-def test_what_would_shorten_the_worst_chain_is_told():
-    shown = text(section(page_of(ADVANCED), "chains"))
+def test_what_would_shorten_the_worst_chain_is_told_if_its_limit_is_missed():
+    shown = text(
+        section(report(ADVANCED, changes={"factor-to-output.reaction": "10 ms"}, with_simulation=False).html, "chains")
+    )
     assert "What would shorten it" in shown
     assert "analysed, one at a time" in shown
+
+
+def test_no_change_is_tried_while_all_limits_are_met():
+    shown = text(section(page_of(ADVANCED), "chains"))
+    assert "What would shorten the latency is tried by amuros analyze --explain factor-to-output." in shown
 
 
 def test_a_percentage_stays_in_one_line():

@@ -148,8 +148,15 @@ def becker(tasks: Sequence[ChainTask]) -> list[Term] | None:
     return [*(Term(wait, 0) for wait in waits[:-1]), Term(waits[-1], tasks[-1].response)]
 
 
+def on_grids(tasks: Sequence[ChainTask]) -> bool:
+    """Whether the releases of each two tasks in a row are multiples of the greatest common divisor of their periods apart."""
+    return all(
+        ((task.offset or 0) - (reader.offset or 0)) % gcd(task.period, reader.period) == 0 for task, reader in pairwise(tasks)
+    )
+
+
 def bi(tasks: Sequence[ChainTask]) -> list[Term]:
-    """Periodic tasks that are released together."""
+    """Periodic tasks whose releases are on grids, such as those that are released together."""
     found, wait = [], 0
     for task, reader in pairwise(tasks):
         grid, run = gcd(task.period, reader.period), task.response_before_read

@@ -261,7 +261,7 @@ class RouteLatencies:
         age = bounds.becker(tasks)
         if age is not None:
             yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, total(age), "reachable jobs", bounds.BECKER)
-        if len({task.offset for task in tasks}) == 1:
+        if bounds.on_grids(tasks):
             grid = total(bounds.bi(tasks))
             yield self._bound(LatencyQuantity.MAX_REDUCED_DATA_AGE, grid, "grid of releases", bounds.BI)
 

@@ -106,11 +106,7 @@ class PhaseCases:
         slots = self._slots(passed)
         if slots is None:
             return self._single
-        # Some bounds depend on the first jobs that take part.
-        taken = self._evaluation.occurrences(chain)
-        return self._by_key(
-            [(slots.row(each), *(each[occurrence] for occurrence in taken if occurrence in each)) for each in self.combinations]
-        )
+        return self._by_key([slots.row(each) for each in self.combinations])
 
     @cached_property
     def _evaluation(self) -> ChainEvaluator:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Losses, Purpose, Transmission, Wire, WireKind
 from amalthea_uros.perf.software import Task
@@ -102,7 +101,4 @@ def _has_threads(wire: Wire, system: System) -> bool:
 def parts(acknowledgement: Transmission, system: System) -> int:
     """How many parts of a message are acknowledged one by one."""
     stimuli = set(system.processes[acknowledgement.name].stimuli)
-    counts = (
-        sum(isinstance(each, Trigger) and each.stimulus in stimuli for each in walk(body)) for body in system.software.bodies
-    )
-    return max(1, *counts)
+    return max([1, *(sum(each in stimuli for each in triggered) for triggered in system.triggered)])

@@ -24,9 +24,6 @@ from amalthea_uros.report.pictures.histogram import Mark, MarkKind
 from amalthea_uros.report.pictures.simulation import gantt_picture, histogram_picture
 from amalthea_uros.report.wording.cells import at_least, at_most, words
 from amalthea_uros.report.wording.chains import value_text
-from amalthea_uros.services.analyze import AnalysisResult
-from amalthea_uros.services.explain import improvements
-from amalthea_uros.services.first_answer import is_small
 from amalthea_uros.services.report import ReportContent
 from amalthea_uros.services.simulate import SimulationResult
 from amalthea_uros.simulate.observations import MetricObservation
@@ -39,7 +36,7 @@ MOST_CHAINS, _SHOWN_OF_HOPS = 6, 2
 
 
 def hops_section(content: ReportContent) -> Section | None:
-    """The hops of the worst chains, of each the latency with the tightest limit; of the worst one, also what would shorten it."""
+    """The hops of the worst chains, of each the latency with the tightest limit; if that is not met, also what would shorten it."""
     chains = worst_chains(content.analysis)
     if not chains:
         return None
@@ -87,29 +84,13 @@ def _limit(chain: str, quantity: LatencyQuantity, content: ReportContent) -> Tim
 
 
 def _shortened(content: ReportContent, chain: str, quantity: LatencyQuantity) -> Block:
-    """The single changes with the greatest effect, and what they make worse."""
-    result = _analyzed(content)
-    if not is_small(result):
-        return Sentences([f"The system is large; amuros analyze --explain {chain} also tries what would shorten the latency."])
-    known = None if content.answer is None else content.answer.improvements
-    found = known if known and (known.chain, known.quantity) == (chain, quantity) else improvements(result, chain, quantity)
+    """The single changes with the greatest effect, and what they make worse, if the answer of the analysis has tried them."""
+    found = None if content.answer is None else content.answer.improvements
+    if found is None or (found.chain, found.quantity) != (chain, quantity):
+        return Sentences([f"What would shorten the latency is tried by amuros analyze --explain {chain}."])
     if not found.found:
         return Sentences([f"No single change shortens it: {tried(found)}."])
     return Folded("What would shorten it", [changes(found), Sentences([f"{tried(found)}."])])
-
-
-def _analyzed(content: ReportContent) -> AnalysisResult:
-    periods = content.assembly.task_periods if content.assembly is not None else ()
-    system, settings = content.system, content.settings
-    return AnalysisResult(
-        paths=(),
-        task_periods=periods,
-        changed=content.changed,
-        system=system,
-        settings=settings,
-        analysis=content.analysis,
-        findings=(),
-    )
 
 
 #: Chains whose ways are drawn, rows of a chart, and charts that are seen at once.

@@ -113,6 +113,7 @@ def _begin_job(m: Memory, process: int) -> None:
         m[process + DEADLINE] = m[process + OWN_DEADLINE]
     if m[process + SERVER]:
         activate_server(m, m[process + SERVER])
+    m[m[process + GROUP]] += 1
     m[m[process + DOMAIN] + PRESENT] += 1
     m[m[process + DOMAIN] + IS_DUE] = 1
 
@@ -139,6 +140,7 @@ def end_job(m: Memory, core: int) -> None:
     if m[process + FIRST_PLACE] == m[process + QUEUE] + m[PLACES] * size:
         m[process + FIRST_PLACE] = m[process + QUEUE]
     m[process + PENDING] -= 1
+    m[m[process + GROUP]] -= 1
     m[m[process + DOMAIN] + PRESENT] -= 1
     leave_core(m, core)
     if m[process + PENDING]:

@@ -102,14 +102,21 @@ def stays(m: Memory, core: int, process: int) -> bool:
 
 def _most_urgent(m: Memory, domain: int) -> int:
     """The most urgent process that can execute; 0 if there is none."""
-    best, place, left, is_static = 0, m[domain + MEMBERS], m[domain + PRESENT], m[domain + RAISED] == 0
+    best, place, group, left = 0, m[domain + MEMBERS], m[domain + GROUPS], m[domain + PRESENT]
+    is_static, of_group = m[domain + RAISED] == 0, m[group]
     while left:
+        while of_group == 0:
+            # The next members.
+            group += 1
+            of_group = m[group]
+            place = m[domain + MEMBERS] + (group - m[domain + GROUPS]) * GROUP_OF_MEMBERS
         process = m[place]
         place += 1
         state = m[process + STATE]
         if state == TERMINATED:
             continue
         left -= 1
+        of_group -= 1
         if state == WAITING:
             continue
         if best and is_static and m[process + LEVEL] < m[best + LEVEL]:

@@ -44,9 +44,9 @@ SLICE, SLICE_LEFT, SERVER, DECISION = range(41, 45)
 CAPTURES, CAPTURES_END, LET_STAGES, LET_STAGES_END = range(45, 49)
 # What it holds and waits for.
 HOLDS, WAITS_FOR, WANTED, WAITS_EVENTS, EVENTS_SET, WAITS_ANSWER, TICKETS = range(49, 56)
-IS_CHOSEN, WATCHED = range(56, 58)
+IS_CHOSEN, WATCHED, GROUP = range(56, 59)
 # The message that its job is about, when that gets to the host, what it is writing, with what it reads, and until when it has waited.
-IS_ABOUT_MESSAGE, ITS_MESSAGE, AT_HOST, WRITES_TO, WRITE_TICKET, READS_WITH, WAITED_UNTIL, PROCESS_SIZE = range(58, 66)
+IS_ABOUT_MESSAGE, ITS_MESSAGE, AT_HOST, WRITES_TO, WRITE_TICKET, READS_WITH, WAITED_UNTIL, PROCESS_SIZE = range(59, 67)
 
 #: A place in the queue of activations of a process: time, number, place in the order of all activations, and a value for each capture.
 QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
@@ -54,8 +54,10 @@ QUEUE_TIME, QUEUE_INSTANCE, QUEUE_SEQUENCE, QUEUE_CAPTURES = range(4)
 # A core.
 STOP, BEGIN, RUNS, NEEDS_STEP, BUSY, CHOSEN, CORE_NUMBER, CORE_ENTITY, CORE_DOMAIN, CORE_SIZE = range(10)
 
-# A domain: cores that share processes; RAISED of them have another level than their own, PRESENT have a job.
-IS_DUE, RAISED, PRESENT, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, ITS_CORES, ITS_CORES_END, DOMAIN_SIZE = range(9)
+# A domain: cores that share processes; RAISED of them have another level than their own, PRESENT have a job. GROUPS is a list: how many
+# have one of the first GROUP_OF_MEMBERS, of the next ones, and so on.
+IS_DUE, RAISED, PRESENT, HAS_COOPERATIVE, MEMBERS, MEMBERS_END, GROUPS, ITS_CORES, ITS_CORES_END, DOMAIN_SIZE = range(10)
+GROUP_OF_MEMBERS = 16
 
 # A stimulus; an assignment is (mode label, value). What is watched is the number of a source of events plus 1, or 0.
 TARGETS, TARGETS_END, CONDITION, COUNTER, ASSIGNMENTS, ASSIGNMENTS_END = range(6)

@@ -220,9 +220,13 @@ class ProcessRecords:
             members = [record for record in everything if words[record + layout.DOMAIN] == domain]
             members.sort(key=lambda record: -words[record + layout.OWN_LEVEL])
             first, end = self.image.items(members)
+            groups, _ = self.image.items(0 for _ in members[:: layout.GROUP_OF_MEMBERS])
+            for number, record in enumerate(members):
+                self.image.put(record, {layout.GROUP: groups + number // layout.GROUP_OF_MEMBERS})
             fields = {
                 layout.MEMBERS: first,
                 layout.MEMBERS_END: end,
+                layout.GROUPS: groups,
                 layout.HAS_COOPERATIVE: int(any(words[record + layout.IS_COOPERATIVE] for record in members)),
             }
             self.image.put(domain, fields)

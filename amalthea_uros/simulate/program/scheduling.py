@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import product
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
@@ -44,6 +45,8 @@ class Dispatching:
     left_out: dict[str, str] = field(default_factory=dict)
     servers: dict[str, Server] = field(default_factory=dict)
     _levels: dict[Rank, int] = field(default_factory=dict)
+    #: Of the tasks of each core: of all of them (None), and of each group.
+    _highest: dict[tuple[str, str | None], int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         context = self.context
@@ -61,6 +64,10 @@ class Dispatching:
         paths = sorted({self.path(item.scheduled) for item in self.processes.values()})
         # Between two levels there is one for those that keep off everybody of the lower one.
         self._levels = {path: 2 * number + 2 for number, path in enumerate(paths)}
+        for item in self.processes.values():
+            if not item.scheduled.is_isr:
+                for key in product(item.cores, (None, item.scheduled.group)):
+                    self._highest[key] = max(self._highest.get(key, 0), self.level(item.scheduled))
 
     def _dispatched(self, name: str, allocation: TaskAllocation | None) -> Dispatched:
         scheduled = self.context.scheduled.get(name)
@@ -122,15 +129,11 @@ class Dispatching:
 
     def running_level(self, item: Dispatched) -> int:
         """The level of a process while it runs: with it, it keeps off the tasks that cannot preempt it."""
-        own, others = item.scheduled, self.processes.values()
-        if own.is_isr:
+        own = item.scheduled
+        is_alone = preemption(own) is Preemption.NON_PREEMPTIVE
+        if own.is_isr or (own.group is None and not is_alone):
             return self.level(own)
-        rivals = [other.scheduled for other in others if set(other.cores) & set(item.cores) and not other.scheduled.is_isr]
-        if preemption(own) is Preemption.NON_PREEMPTIVE:
-            return max(map(self.level, rivals)) + 1
-        if own.group is not None:
-            return max(self.level(other) for other in rivals if other.group == own.group) + 1
-        return self.level(own)
+        return max(self._highest[core, None if is_alone else own.group] for core in item.cores) + 1
 
     def domains(self) -> list[tuple[str, ...]]:
         """The cores, those together that share processes."""

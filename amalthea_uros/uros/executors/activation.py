@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 
 from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once
-from amalthea_uros.perf.activities import Trigger, walk
 from amalthea_uros.perf.distributions import Boundaries, Uniform
 from amalthea_uros.perf.executors import Executor, HandleKind, ThreadLoop
 from amalthea_uros.perf.stimuli import (
@@ -106,9 +106,7 @@ def with_triggered_iterations(system: System) -> System:
     Interrupts and tasks of the middleware may be added to a system with `Trigger(stimulus=iteration_trigger_name(...))` before; the
     stimuli that stand for the arrival of messages otherwise are then replaced.
     """
-    triggered = {
-        activity.stimulus for body in system.software.bodies for activity in walk(body) if isinstance(activity, Trigger)
-    }
+    triggered = set(chain.from_iterable(system.triggered))
     for executor in system.executors:
         if iteration_trigger_name(executor.name) in triggered:
             system = _triggered(system, executor)

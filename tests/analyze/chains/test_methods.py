@@ -16,7 +16,18 @@ from unit_player import UnitTask, play
 
 from amalthea_uros.analyze.chains import job_chains
 from amalthea_uros.analyze.chains.boundary_times import logical
-from amalthea_uros.analyze.chains.bounds import ChainTask, becker, bi, davare, duerr, duerr_data_age, hamann, kloda, total
+from amalthea_uros.analyze.chains.bounds import (
+    ChainTask,
+    becker,
+    bi,
+    davare,
+    duerr,
+    duerr_data_age,
+    hamann,
+    kloda,
+    on_grids,
+    total,
+)
 from amalthea_uros.analyze.chains.read_write_times import ReadWriteTimes
 from amalthea_uros.analyze.response_times import priority_levels, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
@@ -285,7 +296,7 @@ def test_no_run_is_worse_than_a_bound(rows, data):
     if all(task.response <= task.period for task in chain_tasks):
         reactions += [total(duerr(chain_tasks)), total(kloda(chain_tasks))]
         ages += [total(duerr_data_age(chain_tasks)), total(becker(chain_tasks))]
-        if len({task.offset for task in chain_tasks}) == 1:
+        if on_grids(chain_tasks):
             ages.append(total(bi(chain_tasks)))
     for seed in range(3):
         reacting, ageing = observe(tasks, chain, 150, Random(seed))
