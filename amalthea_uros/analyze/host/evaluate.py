@@ -12,6 +12,7 @@ from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.analyze.host.starvation_free import ReadySet, improved
 from amalthea_uros.analyze.host.topics import HostTopics
+from amalthea_uros.analyze.host.windows import MOST_PENDING
 from amalthea_uros.analyze.response_times import edf, non_preemptive
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
@@ -59,7 +60,9 @@ def _from_release(callback: HostCallback, releases: HostReleases) -> Response:
     """The response time that follows from the latency since the first callback of the route was released."""
     latency = releases.latencies[callback.name]
     before = releases.best(callback) - callback.execution.least
-    return replace(latency, worst=(latency.worst or 0) - before, best=callback.execution.least)
+    response = replace(latency, worst=(latency.worst or 0) - before, best=callback.execution.least)
+    windows = releases.windows.get(releases.topics.executor_of[callback.name].name)
+    return response if windows is None else windows.improved_response(response, releases.topics.route(callback))
 
 
 def _improved(
@@ -70,16 +73,14 @@ def _improved(
         has_threads = releases.has_thread_for_each_group(executor)
         return [in_groups(executor, releases.released(executor))] if has_threads else []
     supply, higher = releases.processors[executor.name].supply, releases.preempting(executor)
-    tasks, is_batch = _in_ready_set(executor, host.release, releases), executor.kind is HostExecutorKind.SINGLE_THREADED
-    if executor.kind is HostExecutorKind.STATIC:
-        is_batch = host.release.keeps_batches
-        if not is_batch and not higher and supply is FULL:
-            ranks = {each.name: executor.rank(each, host.release) for each in executor.callbacks}
-            return [_non_preemptive(tasks, ranks)]
-    if is_batch and not higher:
+    tasks = _in_ready_set(executor, host.release, releases)
+    if executor.works_off_ready_sets(host.release) and not higher:
         ready = ReadySet(tasks, _is_order_known(executor, host.release), supply)
         first = improved(polling_points, ready, known)
         return [dict(first), dict(improved(busy_window_aware, ready, first))]
+    if executor.kind is HostExecutorKind.STATIC and not higher and supply is FULL:
+        ranks = {each.name: executor.rank(each, host.release) for each in executor.callbacks}
+        return [_non_preemptive(tasks, ranks)]
     if executor.kind is HostExecutorKind.EVENTS:
         preempting = Interference.of(higher, supply)
         return [{task.name: edf.response_time(task, _others(task, tasks), preempting, method=_FIFO) for task in tasks}]
@@ -156,6 +157,8 @@ def _loss(callback: HostCallback, executor: HostExecutor, worst: Time, releases:
         sequence = f"it can end {time_text(worst)} after it is due, and periods that pass before its call are skipped"
         return Loss(what="periods", is_certain=False, most=None, sequence=sequence)
     pending = releases.events(callback).eta_plus(worst)
+    if executor.name in releases.windows:
+        pending = min(pending, MOST_PENDING)
     if pending <= callback.depth:
         return None
     sequence = f"{pending} messages can wait, and the queue keeps {callback.depth}"

@@ -2,16 +2,21 @@
 
 import json
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
+from host_vectors import every_entry, host_of, paths, with_chains
 from support import SHARED
 
 from amalthea_uros.analyze.host import busy_window_aware, polled, polling_points
 from amalthea_uros.analyze.host.reentrant import ReentrantChain, latencies
 from amalthea_uros.analyze.host.starvation_free import ReadySet, improved
+from amalthea_uros.analyze.host.topics import HostTopics
+from amalthea_uros.analyze.host.windows import Windows
 from amalthea_uros.analyze.response_times import edf, non_preemptive
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
+from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import PeriodicEvents
 
@@ -94,6 +99,33 @@ def test_published_bounds(system, executor, entry):
         if method in bounds:
             assert {name: response.worst for name, response in responses.items()} == bounds[method]
             assert all(response.worst >= observed[name]["response"] for name, response in responses.items())
+
+
+def windows(name):
+    """The system of a name in the vectors with its windows and bounds."""
+    entry = next((each for each in every_entry() if each["system"]["name"] == name), None)
+    if entry is None:
+        pytest.skip("the vectors are not at hand")
+    host = host_of(entry["system"])
+    return entry, host, Windows(sum(callback.execution.most for callback in host.callbacks))
+
+
+@pytest.mark.parametrize("kind", [f"{load}-{kinds}" for load in ("over", "under") for kinds in ("SS", "ST", "TS", "TT")])
+def test_published_bounds_from_any_time(kind):
+    """A chain is in parts: of messages from its timer on, and from a timer to what reads a variable, and to the end of the part."""
+    entry, host, bound = windows(f"fusion-{kind}")
+    topics = HostTopics(host, analyze_system(with_chains(host, [])).solution)
+    for name, path in paths(entry["system"]).items():
+        callbacks = [topics.callbacks[each] for each in path]
+        last = [one for one, other in pairwise(callbacks) if topics.source(other) != one] + callbacks[-1:]
+        assert sum(bound.from_any_time(topics.route(each)) for each in last) == entry["bounds"]["rtss22-e2e"][name]
+
+
+def test_a_chain_of_an_overloaded_executor_takes_as_long_as_its_windows():
+    """The player finds 2,159, in six windows of 360; one tick less, as a timer that is due at the poll is in its set."""
+    entry, host, _ = windows("fusion-over-SS")
+    chains = analyze_system(with_chains(host, paths(entry["system"]).items())).chains
+    assert chains["from-1"].worst == entry["observed"]["from-1"]["latency"] == 6 * 360 - 1
 
 
 def constant(name, period, cost, jitter=0):
