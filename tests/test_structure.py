@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1070,
     "_version": 1,
     "am": 2,
-    "analyze": 9027,
+    "analyze": 9069,
     "bridge": 2871,
     "cli": 2596,
     "compare": 3825,

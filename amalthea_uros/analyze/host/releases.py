@@ -7,6 +7,7 @@ takes time, the jitter is what the times before vary (K. Richter 2005). It is fo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from amalthea_uros._internal.records import dataclass, field
@@ -116,16 +117,12 @@ class HostReleases:
             if executor.kind is HostExecutorKind.MULTI_THREADED:
                 self._solve_threads(executor)
                 return
-            processor, tasks = self.processors[executor.name], self.tasks(executor)
-            higher, windows = self.preempting(executor), self.windows.get(executor.name)
-            for task, callback in zip(tasks, executor.callbacks, strict=True):
-                others = [other for other in tasks if other is not task]
-                response = polled.response_time(task, others, higher, processor.supply)
-                if windows is not None:
-                    response = windows.improved(response, self.topics.route(callback))
-                self.latencies[task.name] = response
-                if response.worst is None:
-                    raise UnknownError(response.reason)
+            supply, windows = self.processors[executor.name].supply, self.windows.get(executor.name)
+            responses = polled.response_times(self.tasks(executor), self.preempting(executor), supply)
+            if windows is not None:
+                routes = map(self.topics.route, executor.callbacks)
+                responses = {route[-1].name: windows.improved(responses[route[-1].name], route) for route in routes}
+            self._use(responses)
         except UnknownError as error:
             self.reasons[executor.name] = str(error)
 
@@ -135,7 +132,9 @@ class HostReleases:
             routes = [self.topics.route(callback) for callback in executor.callbacks]
             self.latencies |= SharedThreads(executor, cores, routes, tasks, self.preempting(executor)).latencies()
             return
-        responses = in_groups(executor, tasks)
+        self._use(in_groups(executor, tasks))
+
+    def _use(self, responses: Mapping[str, Response]) -> None:
         self.latencies |= responses
         for response in responses.values():
             if response.worst is None:

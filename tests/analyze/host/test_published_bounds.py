@@ -8,13 +8,12 @@ import pytest
 from host_vectors import every_entry, host_of, paths, with_chains
 from support import SHARED
 
-from amalthea_uros.analyze.host import busy_window_aware, polled, polling_points
+from amalthea_uros.analyze.host import busy_window_aware, fifo, polled, polling_points
 from amalthea_uros.analyze.host.reentrant import ReentrantChain, latencies
 from amalthea_uros.analyze.host.starvation_free import ReadySet, improved
 from amalthea_uros.analyze.host.topics import HostTopics
 from amalthea_uros.analyze.host.windows import Windows
-from amalthea_uros.analyze.response_times import edf, non_preemptive
-from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times import non_preemptive
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
@@ -47,10 +46,6 @@ def task(callback, sources):
     return AnalysedTask(name=callback["name"], events=PeriodicEvents(period, source.get("jitter", 0)), demand=demand)
 
 
-def without(one, tasks):
-    return [each for each in tasks if each is not one]
-
-
 def results(system, executor):
     """The bounds of all methods for one thread, by method and callback."""
     is_static = executor["type"] == "static"
@@ -60,7 +55,7 @@ def results(system, executor):
     if reserved := executor.get("reservation"):
         budget, period = reserved["budget"], reserved["period"]
         supply = Supply(budget=budget, period=period, wait=2 * (period - budget))
-    any_order = {each.name: polled.response_time(each, without(each, tasks), supply=supply) for each in tasks}
+    any_order = polled.response_times(tasks, supply=supply)
     yield "ecrts19-polled", any_order
     for method, is_ordered in (("rtss21-rr", True), ("rtss21-rr-unordered", False)):
         yield method, improved(polling_points, ReadySet(tasks, is_ordered, supply), any_order)
@@ -68,7 +63,7 @@ def results(system, executor):
     ready, known = ReadySet(tasks, True, supply), {name: response.worst for name, response in any_order.items()}
     after_one = {task.name: busy_window_aware.latest(index, ready, known) for index, task in enumerate(tasks)}
     yield "rtss21-bw", {name: replace(response, worst=after_one[name]) for name, response in any_order.items()}
-    yield "fifo", {each.name: edf.response_time(each, without(each, tasks), Interference.of([])) for each in tasks}
+    yield "fifo", fifo.response_times(tasks)
     blocking = [max((other.demand.worst - 1 for other in tasks[index + 1 :]), default=0) for index in range(len(tasks))]
     yield (
         "np-fp",
@@ -135,12 +130,12 @@ def constant(name, period, cost, jitter=0):
 def test_a_callback_waits_for_the_whole_ready_set():
     """A timer that is due just after the poll waits for three callbacks of 20, and takes 5."""
     timer, *others = (constant("t", 100, 5), *(constant(f"s{index}", 100, 20) for index in range(3)))
-    assert polled.response_time(timer, others).worst == 3 * 20 + 5
+    assert polled.response_times([timer, *others])["t"].worst == 3 * 20 + 5
 
 
 def test_a_thread_of_higher_priority_preempts_it():
     """Of 12 after 5 of the other thread, which comes again after 20 only."""
-    assert polled.response_time(constant("l", 40, 12), [], [constant("h", 20, 5)]).worst == 5 + 12
+    assert polled.response_times([constant("l", 40, 12)], [constant("h", 20, 5)])["l"].worst == 5 + 12
 
 
 def test_a_burst_is_called_once_for_each_polling_point():
@@ -149,7 +144,7 @@ def test_a_burst_is_called_once_for_each_polling_point():
     It is pending at one polling point, so that one of them comes before it at most, and one more if it is called before it.
     """
     burst, other = constant("burst", 100, 5, jitter=200), constant("other", 100, 20)
-    known = {each.name: polled.response_time(each, without(each, [burst, other])) for each in (burst, other)}
+    known = polled.response_times([burst, other])
     assert known["other"].worst == 3 * 5 + 20
     assert improved(polling_points, ReadySet([burst, other], is_ordered=True), known)["other"].worst == 2 * 5 + 20
     assert improved(polling_points, ReadySet([other, burst], is_ordered=True), known)["other"].worst == 1 * 5 + 20
