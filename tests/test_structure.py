@@ -48,7 +48,7 @@ LINES = {
     "timing": 5671,
     "trace": 5073,
     "units": 206,
-    "uros": 7643,
+    "uros": 7714,
     "validate": 3667,
     "xmi": 8579,
 }

@@ -205,7 +205,7 @@ class HostReleases:
         if not sources:
             raise UnknownError(f"nobody that is described publishes {topic!r}; set 'rate' of the topic")
         if latency.most is None:
-            raise UnknownError(f"the latency of the topic {topic!r} is not specified")
+            raise UnknownError(f"the latency of the topic {topic!r} is not specified; set 'latency' of it or of the host")
         return aggregated(tuple(delayed(each, latency.most - latency.least) for each in sources))
 
 
