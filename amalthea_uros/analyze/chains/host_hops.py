@@ -6,7 +6,7 @@ sum, so that the smaller one counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 from amalthea_uros._internal.records import dataclass, replace
@@ -81,7 +81,7 @@ class HostHops:
         """How messages can be lost on the path of a chain."""
         yield from self._losses(segment.callbacks)
 
-    def _losses(self, callbacks: Sequence[HostCallback]) -> Iterator[str]:
+    def _losses(self, callbacks: Iterable[HostCallback]) -> Iterator[str]:
         for callback in callbacks:
             lost = self._result(callback).lost
             if lost is not None and callback.topic is not None:
@@ -112,21 +112,13 @@ class HostHops:
             )
             remedy = f"See the results of the executor {executor!r}."
             return Hop(kind=HopKind.HOST, name=name, best=best, reason=reason, remedy=remedy)
-        hop_by_hop, whole, latency = (
-            sum(each.worst or 0 for each in responses),
-            self._whole(route),
-            releases.latencies[route[-1].name],
-        )
+        hop_by_hop, latency = sum(each.worst or 0 for each in responses), releases.latencies[route[-1].name]
+        whole = (latency.worst or 0) - releases.best(route[0]) + route[0].execution.least
         method = f"response time: {responses[0].method} ({responses[0].source})"
         by_hop = method if len(route) == 1 else "sum of response times"
         source = by_hop if hop_by_hop <= whole else f"latency of the route: {latency.method} ({latency.source})"
         parts = self._result(route[0]).terms if len(route) == 1 and hop_by_hop <= whole else ()
         return Hop(kind=HopKind.HOST, name=name, best=best, worst=min(hop_by_hop, whole), source=source, parts=parts)
-
-    def _whole(self, route: Sequence[HostCallback]) -> Time:
-        releases = self.host.releases
-        before = releases.best(route[0]) - route[0].execution.least
-        return (releases.latencies[route[-1].name].worst or 0) - before
 
     def _entered(self, route: Sequence[HostCallback], is_sampled: bool) -> Hop:
         """The hop of callbacks that wake each other, from a message for the first one, or from a write of a variable that it reads."""
@@ -156,17 +148,13 @@ class HostHops:
         """
         topics = self.host.releases.topics
         route = topics.route(callback)
-        hop, head, windows = (
-            self._route(route),
-            route[0],
-            self.host.releases.windows.get(topics.executor_of[callback.name].name),
-        )
+        hop, head = self._route(route), route[0]
         if hop.worst is None:
             raise UnknownError(hop.reason)
-        if lost := next(self._losses([each for each in route if each not in path]), None):
+        if lost := next(self._losses(each for each in route if each not in path), None):
             raise UnknownError(lost)
         if head.period is not None:
-            longest = head.period + hop.worst
+            longest, windows = head.period + hop.worst, self.host.releases.windows.get(topics.executor_of[head.name].name)
             return longest if windows is None else min(longest, windows.from_any_time(route))
         latency = topics.latency(head.topic or "").most
         publishers = topics.publishers(head.topic or "")

@@ -54,15 +54,15 @@ class HostTopics:
 
     @cached_property
     def _publishers(self) -> Mapping[str, list[HostCallback]]:
-        """The callbacks of the host that publish a topic, by its name."""
+        """The callbacks of the host that publish a topic, by its name, each as often as a call of it does."""
         publishers: dict[str, list[HostCallback]] = {}
         for callback in self.host.callbacks:
-            for topic in dict.fromkeys(callback.publishes):
+            for topic in callback.publishes:
                 publishers.setdefault(topic, []).append(callback)
         return publishers
 
     def publishers(self, topic: str) -> Sequence[HostCallback]:
-        """The callbacks of the host that publish a topic."""
+        """The callbacks of the host that publish a topic, each as often as a call of it does."""
         return self._publishers.get(topic, ())
 
     def circles(self) -> list[set[str]]:

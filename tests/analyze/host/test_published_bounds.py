@@ -16,6 +16,9 @@ from amalthea_uros.analyze.host.windows import Windows
 from amalthea_uros.analyze.response_times import non_preemptive
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
 from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.host import Host, HostCallback, HostComputer, HostExecutor, HostPolicy, HostThread, HostTopic
+from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import PeriodicEvents
 
@@ -131,6 +134,21 @@ def test_a_callback_waits_for_the_whole_ready_set():
     """A timer that is due just after the poll waits for three callbacks of 20, and takes 5."""
     timer, *others = (constant("t", 100, 5), *(constant(f"s{index}", 100, 20) for index in range(3)))
     assert polled.response_times([timer, *others])["t"].worst == 3 * 20 + 5
+
+
+def test_two_messages_of_one_call_are_two():
+    """The second one waits for the first one, which takes 20."""
+    rules = {"kind": HandleKind.TIMER, "period": 100, "execution": Span(least=5, most=5), "publishes": ("m", "m")}
+    taken = {"kind": HandleKind.SUBSCRIPTION, "topic": "m", "execution": Span(least=20, most=20)}
+    callbacks = (HostCallback(name="t", **rules), HostCallback(name="s", **taken))
+    thread = HostThread(policy=HostPolicy.FIFO, priority=1, cores=(0,))
+    host = Host(
+        computers=(HostComputer(name="pc", cores=1),),
+        executors=(HostExecutor(name="E", computer="pc", thread=thread, callbacks=callbacks),),
+        topics=(HostTopic(name="m", latency=Span(most=0)),),
+    )
+    (executor,) = analyze_system(with_chains(host, [])).host
+    assert executor.handles["s"].response.worst >= 2 * 20
 
 
 def test_a_thread_of_higher_priority_preempts_it():
