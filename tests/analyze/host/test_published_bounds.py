@@ -126,6 +126,13 @@ def test_a_chain_of_an_overloaded_executor_takes_as_long_as_its_windows():
     assert chains["from-1"].worst == entry["observed"]["from-1"]["latency"] == 6 * 360 - 1
 
 
+@pytest.mark.parametrize(("period", "worst"), [(100, 100 + 5), (1, 5 + 5)])
+def test_the_next_call_of_a_timer_that_is_alone(period, worst):
+    """It began just before: the next one begins when it is due, or when this one ends, and takes 5."""
+    timer = HostCallback(name="t", kind=HandleKind.TIMER, period=period, execution=Span(least=5, most=5))
+    assert Windows(5).from_any_time([timer]) == worst
+
+
 def constant(name, period, cost, jitter=0):
     return AnalysedTask(name=name, events=PeriodicEvents(period, jitter), demand=MultiframeDemand.constant(cost))
 
