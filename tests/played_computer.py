@@ -156,7 +156,7 @@ class Worker:
 
     executor: Executor
     thread: object
-    cores: tuple
+    cores: list
     job: tuple | None = None
     left: int = 0
     budget: int = 0
@@ -184,7 +184,7 @@ class Play:
         self.last_arrival, self.unread, self.workers = defaultdict(int), {}, []
         self.readers = defaultdict(list)
         self.subscribers = defaultdict(list)
-        self.cores = range(host.computers[0].cores)
+        self.cores = [(computer.name, core) for computer in host.computers for core in range(computer.cores)]
         for section in host.executors:
             executor = KINDS[section.kind](section, str(host.release), random, lambda each: random.randrange(each.period))
             for each in section.callbacks:
@@ -192,7 +192,9 @@ class Play:
                     self.readers[variable].append(each.name)
                 self.subscribers[each.topic].append((executor, each))
             count = section.threads if section.kind == "multi-threaded" else 1
-            self.workers += [Worker(executor, section.thread, section.thread.cores or tuple(self.cores)) for _ in range(count)]
+            allowed = [core for core in self.cores if core[0] == section.computer]
+            cores = [core for core in allowed if core[1] in section.thread.cores] or allowed
+            self.workers += [Worker(executor, section.thread, cores) for _ in range(count)]
         self.running = dict.fromkeys(self.cores)
         for topic, times in sources.items():
             for time in times:
@@ -262,7 +264,7 @@ class Play:
             self.whole[names] = max(self.whole[names], end - trail[0][1])
         for variable in callback.writes:
             for reader in self.readers[variable]:
-                self.unread[variable, reader] = trails
+                self.unread.setdefault((variable, reader), []).extend(trails)
         for topic in callback.publishes:
             latency = self.topics[topic].latency
             for executor, subscriber in self.subscribers[topic]:

@@ -1,4 +1,4 @@
-"""Random hosts with everything that a description has: policies, kinds of executors, groups, services, variables, shared topics."""
+"""Random hosts with everything that a description has: computers, policies, kinds of executors, groups, services, variables, topics."""
 
 from random_hosts import chain_of
 
@@ -21,10 +21,15 @@ ONE_THREAD = (HostExecutorKind.SINGLE_THREADED, HostExecutorKind.STATIC, HostExe
 
 
 class Chains:
-    """Callbacks in chains: each hop is a topic, a service, a variable, or a topic of an earlier chain; `callbacks` are keywords."""
+    """Callbacks in chains: each hop is a topic, a service, a variable, or a topic of an earlier chain; `callbacks` are keywords.
 
-    def __init__(self, random, load):
+    Variables are read by timers, and by subscriptions that another timer wakes. If the chains are closed, timers alone begin them, and
+    topics take no time.
+    """
+
+    def __init__(self, random, load, is_closed):
         self.random, self.callbacks, self.topics, self.paths = random, {}, [], []
+        self.outside, self.latencies = (0, [(0, 0)]) if is_closed else (0.35, [(0, 0), (0, 0), (0, 3), (2, 2), (1, 9)])
         for number in range(random.randint(1, 4)):
             share = load * random.uniform(0.1, 0.5)
             load -= share
@@ -34,7 +39,7 @@ class Chains:
         period, hops = self.random.choice([20, 30, 40, 60, 100]), self.random.randint(1, 3)
         cost = max(1, int(period * share / hops))
         name = f"c{number}_0"
-        if self.random.random() < 0.35:
+        if self.random.random() < self.outside:
             topic = HostTopic(name=f"in{number}", interval=period, jitter=self.random.choice([0, period // 2, 2 * period]))
             self.topics.append(topic)
             self.add(name, cost, topic=topic.name)
@@ -64,7 +69,13 @@ class Chains:
         name = f"c{label}"
         if kind == "variable":
             self.callbacks[before]["writes"].append(f"v{label}")
-            self.add(name, cost, period=self.random.choice([20, 30, 50]), reads=[f"v{label}"])
+            period = self.random.choice([20, 30, 50])
+            if self.random.random() < 0.5:
+                self.add(name, cost, period=period, reads=[f"v{label}"])
+                return [name]
+            self.add(f"{name}_clock", cost, period=period)
+            self.callbacks[f"{name}_clock"]["publishes"].append(self.topic(f"k{label}"))
+            self.add(name, cost, topic=f"k{label}", reads=[f"v{label}"])
             return [name]
         self.callbacks[before]["publishes"].append(self.topic(f"m{label}"))
         self.add(name, cost, topic=f"m{label}")
@@ -73,7 +84,7 @@ class Chains:
         return [name]
 
     def topic(self, name):
-        least, most = self.random.choice([(0, 0), (0, 0), (0, 3), (2, 2), (1, 9)])
+        least, most = self.random.choice(self.latencies)
         self.topics.append(HostTopic(name=name, latency=Span(least=least, most=most)))
         return name
 
@@ -92,19 +103,19 @@ class Chains:
         }
 
 
-def random_executors(random):
+def random_executors(random, computer):
     """Executors without callbacks, their number of cores, and which of them are isolated."""
     executors, isolated, core = [], [], 0
 
     def add(kind, thread, threads=1):
-        name = f"E{len(executors)}"
-        executors.append({"name": name, "computer": "pc", "kind": kind, "thread": thread, "threads": threads})
+        name = f"{computer}/E{len(executors)}"
+        executors.append({"name": name, "computer": computer, "kind": kind, "thread": thread, "threads": threads})
 
     def fifo(*cores):
         return HostThread(policy=HostPolicy.FIFO, priority=random.randint(1, 4), cores=cores)
 
     for _ in range(random.randint(1, 3)):
-        match random.choice(["fifo", "fifo", "reserved", "shared", "own", "other"]):
+        match random.choice(["fifo", "fifo", "reserved", "global", "shared", "own", "other"]):
             case "fifo":
                 for _ in range(random.randint(1, 3)):
                     add(random.choice(ONE_THREAD), fifo(core))
@@ -117,6 +128,17 @@ def random_executors(random):
                     add(random.choice(ONE_THREAD), reserved)
                 if random.random() < 0.5:
                     add(random.choice(ONE_THREAD), fifo(core))
+            case "global":
+                cores = range(core, core + random.randint(2, 3))
+                for _ in range(random.randint(1, len(cores) + 2)):
+                    period = random.choice([5, 10, 20])
+                    budget = max(1, period * random.choice([15, 30, 45, 60]) // 100)
+                    reserved = HostThread(policy=HostPolicy.DEADLINE, budget=budget, period=period, cores=tuple(cores))
+                    is_one = random.random() < 0.95
+                    add(random.choice(ONE_THREAD) if is_one else HostExecutorKind.MULTI_THREADED, reserved, 1 if is_one else 2)
+                if random.random() < 0.3:
+                    add(random.choice(ONE_THREAD), fifo(core))
+                core = cores[-1]
             case "shared":
                 add(HostExecutorKind.MULTI_THREADED, fifo(core), random.randint(1, 4))
                 if random.random() < 0.5:
@@ -136,18 +158,25 @@ def random_executors(random):
 
 def random_computer(random, release):
     """A system with a host, and the paths of its chains, of which each has the name of its last callback."""
-    executors, cores, isolated = random_executors(random)
-    chains = Chains(random, cores * random.uniform(0.2, 0.6))
+    computers, executors = [], []
+    for name in random.choice([("pc",), ("pc",), ("pc", "robot")]):
+        threads, cores, isolated = random_executors(random, name)
+        computers.append(HostComputer(name=name, cores=cores, isolated=tuple(isolated)))
+        executors += threads
+    # Executors that need more than their core have bounds, too, if nothing but their timers makes them work.
+    is_overloaded = random.random() < 0.2
+    load = random.uniform(1, 3) if is_overloaded else random.uniform(0.2, 0.6)
+    chains = Chains(random, load * sum(each.cores for each in computers), is_closed=is_overloaded)
     placed = {each["name"]: [] for each in executors}
     for callback in chains.callbacks.values():
-        executor = random.choice(executors)
+        executor = executors[0] if is_overloaded else random.choice(executors)
         is_reentrant = executor["kind"] is HostExecutorKind.MULTI_THREADED and random.random() < 0.3
         group = f"{executor['name']}/{'reentrant' if is_reentrant else random.choice('aab')}"
         lists = {key: tuple(callback[key]) for key in ("publishes", "reads", "writes")}
         placed[executor["name"]].append(HostCallback(**callback | lists, group=group, is_reentrant=is_reentrant))
     host = Host(
         release=release,
-        computers=(HostComputer(name="pc", cores=cores, isolated=tuple(isolated)),),
+        computers=tuple(computers),
         executors=tuple(HostExecutor(**each, callbacks=tuple(placed[each["name"]])) for each in executors),
         topics=tuple(chains.topics),
     )

@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1071,
     "_version": 1,
     "am": 2,
-    "analyze": 9064,
+    "analyze": 9069,
     "bridge": 2877,
     "cli": 2600,
     "compare": 3829,

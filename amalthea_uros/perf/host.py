@@ -113,6 +113,11 @@ class HostExecutor(Named):
     threads: int = 1
     callbacks: tuple[HostCallback, ...] = ()
 
+    def works_off_ready_sets(self, release: RosRelease) -> bool:
+        """Whether one thread calls all that a poll has found before it polls again."""
+        is_static = self.kind is HostExecutorKind.STATIC
+        return self.kind is HostExecutorKind.SINGLE_THREADED or (is_static and release.keeps_batches)
+
     def rank(self, callback: HostCallback, release: RosRelease) -> int:
         """The place of the kind of a callback in a ready set (rclcpp `allocator_memory_strategy.hpp`, `wait_result.hpp`).
 

@@ -68,9 +68,9 @@ class ThreadSection(DescriptionSection):
         for key in needed:
             if getattr(self, key) is None:
                 raise problem(f"the policy {self.policy!r} needs {key!r}")
-        for key in ("priority", "budget", "period"):
+        for key, policy in (("priority", "fifo"), ("budget", "deadline"), ("period", "deadline")):
             if getattr(self, key) is not None and key not in needed:
-                raise problem(f"the policy {self.policy!r} has no {key!r}")
+                raise problem(f"the policy {self.policy!r} has no {key!r}; set 'policy: {policy}', or remove it")
         if self.core is not None and self.cores is not None:
             raise problem("'core' cannot be combined with 'cores'")
         if self.budget is not None and self.period is not None and self.budget > self.period:

@@ -17,7 +17,7 @@ from amalthea_uros.uros.executors.activation import is_triggered, iteration_trig
 from amalthea_uros.uros.executors.loop_items import loop_callbacks
 from amalthea_uros.uros.executors.sleeps import check_sleeps
 from amalthea_uros.uros.executors.threads import names_of_loops
-from amalthea_uros.uros.host import host_of, topics_of_nodes
+from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.middleware.checks import check_middleware
 from amalthea_uros.uros.middleware.options import Option, check_options
 from amalthea_uros.uros.network.classic_bus import BusMessage, add_interrupt, bus_messages, check_bus_load, check_identifiers
@@ -84,7 +84,7 @@ def add_processes(context: AssemblyContext, options: Sequence[Option], database:
     check_options(options, middleware, notes)
     check_middleware(callbacks, context.profile, notes)
     context.channels = internal_channels(callbacks)
-    context.host = host_of(description.host, topics_of_nodes(description.application), notes)
+    context.host = host_of(description.host, description.application.nodes, notes)
     choices = add_callbacks(context, callbacks)
     wakes = [iteration_trigger_name(each.name) for each in context.executors if is_triggered(each)]
     network = planned_network(context, callbacks, wakes, database)

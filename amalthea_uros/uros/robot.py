@@ -20,7 +20,7 @@ from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.assembly.planned import HIGHER_IS_MORE_URGENT
 from amalthea_uros.uros.chain_members import members_together
 from amalthea_uros.uros.demands import with_demands
-from amalthea_uros.uros.host import host_of, topics_of_nodes
+from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.profiles import stated_profile
 from amalthea_uros.uros.stacks import separate_stacks
@@ -92,8 +92,8 @@ def _check_names(system: System, description: Description, problems: Notes) -> N
 
 def _host(description: Description, controllers: Mapping[str, Assembly], system: System, problems: Notes) -> Host:
     """The host, with the topics that only controllers send each other."""
-    published = {topic for each in controllers.values() for topic in topics_of_nodes(each.description.application)}
-    host = host_of(description.host, published, problems)
+    nodes = [node for each in controllers.values() for node in each.description.application.nodes]
+    host = host_of(description.host, nodes, problems)
     known = {topic.name for topic in host.topics}
     stated = description.host.latency if description.host is not None else None
     latency = Span() if stated is None else Span(least=stated.min, most=stated.max)

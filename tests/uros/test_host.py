@@ -92,6 +92,15 @@ def test_reservations_on_one_core_have_to_fit_on_it(cores, worst_of_log):
     assert worst(text, "log", "On_Log") == (None if worst_of_log is None else parse_time(worst_of_log))
 
 
+@pytest.mark.parametrize(("others", "worst_of_log"), [(4, "17 ms"), (6, "17 ms"), (8, None)])
+def test_more_reservations_than_cores_keep_their_deadlines_under_a_bound_of_their_shares(others, worst_of_log):
+    """Two cores guarantee 2 - 0.6 for 0.2 + 2 x 0.6, but only 2 - 0.8 for 0.2 + 2 x 0.8 (Goossens, Funk, Baruah 2003)."""
+    log, control = (f"{{policy: deadline, budget: {budget} ms, period: 10 ms, cores: [0, 1]}}" for budget in (2, others))
+    text = ROBOT.replace("{policy: fifo, priority: 20, core: 0}", log).replace("{policy: fifo, priority: 80, core: 0}", control)
+    text = text.replace("    - {name: log,", f"    - {{name: third, thread: {control}}}\n    - {{name: log,")
+    assert worst(text, "log", "On_Log") == (None if worst_of_log is None else parse_time(worst_of_log))
+
+
 def test_each_thread_of_a_multi_threaded_executor_has_a_reservation_of_its_own():
     """Both can take the core from the other executor, each twice in a row: 3.8 ms and two times two budgets of 1 ms."""
     log = "{name: log, type: multi-threaded, threads: 2, thread: {policy: deadline, budget: 1 ms, period: 20 ms}"
@@ -111,13 +120,13 @@ def test_each_thread_of_a_multi_threaded_executor_has_a_reservation_of_its_own()
         (
             "control, thread: {policy: fifo, priority: 80,",
             "control, type: multi-threaded, threads: 2, thread: {policy: deadline, budget: 5 ms, period: 10 ms,",
-            "no published method covers the reservation of the multi-threaded executor",
+            "a thread of 'control' that has used its budget up can hold up the others",
         ),
         (
             "{policy: fifo, priority: 80, core: 0}}\n    - {name: log, thread: {policy: fifo, priority: 20, core: 0}",
             "{policy: deadline, budget: 6 ms, period: 10 ms, core: 0}}\n"
             "    - {name: log, thread: {policy: deadline, budget: 5 ms, period: 10 ms, core: 0}",
-            "more reservations than cores",
+            "those on its cores need 1.1 cores, and global EDF guarantees no more than 1",
         ),
         (
             "{policy: fifo, priority: 80, core: 0}}\n    - {name: log, thread: {policy: fifo, priority: 20, core: 0}",

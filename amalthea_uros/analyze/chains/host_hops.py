@@ -6,10 +6,10 @@ sum, so that the smaller one counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.analyze.chains.segments import ChainSegment, HostSegment, name_of
 from amalthea_uros.analyze.host.handover import violated
 from amalthea_uros.analyze.host.results import HostResults
@@ -19,8 +19,6 @@ from amalthea_uros.executors.results import HandleResult, Hop, HopKind
 from amalthea_uros.perf.host import HostCallback
 from amalthea_uros.perf.network import Direction, Transmission, plain_topic
 from amalthea_uros.units import Time
-
-_ROUTE_METHOD = "latency of the route in its executor (Casini et al. 2019)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,23 +49,19 @@ class HostHops:
             raise UnknownError(
                 f"a message takes the effect from {name_of(before)!r} to {first.name!r}; add its topic to the path"
             )
-        route = [first]
+        route, is_sampled = [first], False
         for one, other in pairwise(segment.callbacks):
             if self.host.releases.topics.source(other) == one:
                 route.append(other)
                 continue
-            if route:
-                yield self._route(route)
-            if other.topic is not None and other.topic in one.publishes:
-                yield self._topic(other.topic)
-                route = [other]
-            elif set(one.writes) & set(other.reads):
-                yield self._sampling(other)
-                route = []
-            else:
+            yield self._entered(route, is_sampled)
+            is_sampled = other.topic is None or other.topic not in one.publishes
+            if not is_sampled:
+                yield self._topic(other.topic or "")
+            elif not set(one.writes) & set(other.reads):
                 raise UnknownError(f"no topic or variable connects {one.name!r} to {other.name!r}")
-        if route:
-            yield self._route(route)
+            route = [other]
+        yield self._entered(route, is_sampled)
 
     def leaving(self, segment: HostSegment, transmission: Transmission) -> Hop:
         """From the last callback to the agent.
@@ -98,7 +92,10 @@ class HostHops:
 
     def losses(self, segment: HostSegment) -> Iterator[str]:
         """How messages can be lost on the path of a chain."""
-        for callback in segment.callbacks:
+        yield from self._losses(segment.callbacks)
+
+    def _losses(self, callbacks: Iterable[HostCallback]) -> Iterator[str]:
+        for callback in callbacks:
             lost = self._result(callback).lost
             if lost is not None and callback.topic is not None:
                 yield f"{lost.what} of {callback.name!r} can be lost: {lost.sequence}"
@@ -128,32 +125,52 @@ class HostHops:
             )
             remedy = f"See the results of the executor {executor!r}."
             return Hop(kind=HopKind.HOST, name=name, best=best, reason=reason, remedy=remedy)
-        hop_by_hop, whole = sum(each.worst or 0 for each in responses), self._whole(route)
+        hop_by_hop, latency = sum(each.worst or 0 for each in responses), releases.latencies[route[-1].name]
+        whole = (latency.worst or 0) - releases.best(route[0]) + route[0].execution.least
         method = f"response time: {responses[0].method} ({responses[0].source})"
-        source = (method if len(route) == 1 else "sum of response times") if hop_by_hop <= whole else _ROUTE_METHOD
+        by_hop = method if len(route) == 1 else "sum of response times"
+        source = by_hop if hop_by_hop <= whole else f"latency of the route: {latency.method} ({latency.source})"
         parts = self._result(route[0]).terms if len(route) == 1 and hop_by_hop <= whole else ()
         return Hop(kind=HopKind.HOST, name=name, best=best, worst=min(hop_by_hop, whole), source=source, parts=parts)
 
-    def _whole(self, route: Sequence[HostCallback]) -> Time:
-        releases = self.host.releases
-        before = releases.best(route[0]) - route[0].execution.least
-        return (releases.latencies[route[-1].name].worst or 0) - before
-
-    def _sampling(self, callback: HostCallback) -> Hop:
-        """From the write of a variable to the end of the callback that reads it at its next call.
-
-        A timer keeps its grid: the next time at which it is due is at most a period later, and a call at or after that time reads the
-        variable, also if periods are skipped.
-        """
-        response = self._result(callback).response
-        executor = self.host.releases.topics.executor_of[callback.name].name
-        name = f"{executor}: {callback.name}"
-        if callback.period is None:
-            reason = f"the time between two messages of {callback.name!r} has no maximum"
+    def _entered(self, route: Sequence[HostCallback], is_sampled: bool) -> Hop:
+        """The hop of callbacks that wake each other, from a message for the first one, or from a write of a variable that it reads."""
+        hop, last = self._route(route), route[-1]
+        if not is_sampled or hop.worst is None:
+            return replace(hop, kind=HopKind.SAMPLING, best=0) if is_sampled else hop
+        hop = replace(hop, kind=HopKind.SAMPLING, best=hop.best - route[0].execution.least, parts=())
+        try:
+            worst = self._from_any_time(last, route)
+        except UnknownError as error:
             remedy = "Read the variable in a timer, or let the path begin with the topic of the callback."
-            return Hop(kind=HopKind.SAMPLING, name=name, best=0, reason=reason, remedy=remedy)
-        if response.worst is None:
-            reason = f"the response time of {callback.name!r} in {executor!r} has no bound: {response.reason}"
-            return Hop(kind=HopKind.SAMPLING, name=name, best=0, reason=reason, remedy=f"See the results of {executor!r}.")
-        worst, source = callback.period + response.worst, f"period and response time of {callback.name}"
-        return Hop(kind=HopKind.SAMPLING, name=name, best=0, worst=worst, source=source)
+            return replace(hop, worst=None, source="", reason=str(error), remedy=remedy)
+        return replace(hop, worst=worst, source=f"time between two calls of {route[0].name} and until the end of {last.name}")
+
+    def _from_any_time(self, callback: HostCallback, path: Sequence[HostCallback] = ()) -> Time:
+        """From any time to the end of the first call of a callback for a timer that is called at that time or later.
+
+        A timer keeps its grid: the next time at which it is due is at most a period later, also if periods are skipped.
+
+        Parameters
+        ----------
+        path : callbacks whose losses are those of the chain
+
+        Raises
+        ------
+        UnknownError : there is no maximum.
+        """
+        topics = self.host.releases.topics
+        route = topics.route(callback)
+        hop, head = self._route(route), route[0]
+        if hop.worst is None:
+            raise UnknownError(hop.reason)
+        if lost := next(self._losses(each for each in route if each not in path), None):
+            raise UnknownError(lost)
+        if head.period is not None:
+            longest, windows = head.period + hop.worst, self.host.releases.windows.get(topics.executor_of[head.name].name)
+            return longest if windows is None else min(longest, windows.from_any_time(route))
+        latency = topics.latency(head.topic or "").most
+        publishers = topics.publishers(head.topic or "")
+        if latency is None or not publishers:
+            raise UnknownError(f"the time between two messages of {head.name!r} has no maximum")
+        return min(map(self._from_any_time, publishers)) + latency + hop.worst

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 from amalthea_uros.analyze.host.starvation_free import ReadySet
 from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.response_times.task import FULL
 from amalthea_uros.units import Time
 
 METHOD = "busy window, polling points while a callback is pending"
@@ -20,7 +21,11 @@ _MOST_RELEASES = 500
 
 def latest(index: int, ready: ReadySet, known: Mapping[str, Time]) -> Time:
     """The response time of a callback if those of all are known."""
-    limit = known[ready.tasks[index].name]
+    task, limit = ready.tasks[index], known[ready.tasks[index].name]
+    calls = task.events.eta_plus(limit)
+    # If no more is released than can be called, the bound for any order is as good, unless there is a reservation.
+    if ready.supply is FULL and all(other.events.eta_plus(limit) <= calls for other in ready.tasks):
+        return limit
     window = Interference.of(ready.tasks, ready.supply).window(0, 0)
     if window is None or sum(task.events.eta_plus(window) for task in ready.tasks) > _MOST_RELEASES:
         return limit

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from amalthea_uros._internal.by_name import Results
-from amalthea_uros.analyze.host import busy_window_aware, polling_points
+from amalthea_uros.analyze.host import busy_window_aware, fifo, polled, polling_points
 from amalthea_uros.analyze.host.findings import add_findings
 from amalthea_uros.analyze.host.multi_threaded import in_groups
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.results import HostResults
 from amalthea_uros.analyze.host.starvation_free import ReadySet, improved
 from amalthea_uros.analyze.host.topics import HostTopics
-from amalthea_uros.analyze.response_times import edf, non_preemptive
-from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.host.windows import MOST_PENDING
+from amalthea_uros.analyze.response_times import non_preemptive
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Loss, TimePart
@@ -34,7 +35,7 @@ def evaluate_host(solved: SolvedSystem) -> HostResults:
 
 def _result(executor: HostExecutor, host: Host, releases: HostReleases) -> ExecutorResult:
     reason = releases.reasons.get(executor.name, "")
-    responses = {} if reason else _responses(executor, host, releases)
+    responses = _responses(executor, host, releases) if executor.callbacks and not reason else {}
     return ExecutorResult(
         name=executor.name,
         task=executor.name,
@@ -59,45 +60,42 @@ def _from_release(callback: HostCallback, releases: HostReleases) -> Response:
     """The response time that follows from the latency since the first callback of the route was released."""
     latency = releases.latencies[callback.name]
     before = releases.best(callback) - callback.execution.least
-    return replace(latency, worst=(latency.worst or 0) - before, best=callback.execution.least)
+    response = replace(latency, worst=(latency.worst or 0) - before, best=callback.execution.least)
+    windows = releases.windows.get(releases.topics.executor_of[callback.name].name)
+    return response if windows is None else windows.improved_response(response, releases.topics.route(callback))
 
 
 def _improved(
-    executor: HostExecutor, host: Host, releases: HostReleases, known: dict[str, Response]
-) -> list[dict[str, Response]]:
-    """The results of the methods that hold for the kind of the executor and the distribution."""
+    executor: HostExecutor, host: Host, releases: HostReleases, known: Mapping[str, Response]
+) -> Iterator[Mapping[str, Response]]:
+    """The results of the methods that hold for the kind of the executor and the distribution.
+
+    Parameters
+    ----------
+    known : the best results so far, on which later methods rely
+    """
     if executor.kind is HostExecutorKind.MULTI_THREADED:
-        has_threads = releases.has_thread_for_each_group(executor)
-        return [in_groups(executor, releases.released(executor))] if has_threads else []
+        if releases.has_thread_for_each_group(executor):
+            yield in_groups(executor, releases.released(executor))
+        return
     supply, higher = releases.processors[executor.name].supply, releases.preempting(executor)
-    tasks, is_batch = _in_ready_set(executor, host.release, releases), executor.kind is HostExecutorKind.SINGLE_THREADED
-    if executor.kind is HostExecutorKind.STATIC:
-        is_batch = host.release.keeps_batches
-        if not is_batch and not higher and supply is FULL:
-            ranks = {each.name: executor.rank(each, host.release) for each in executor.callbacks}
-            return [_non_preemptive(tasks, ranks)]
-    if is_batch and not higher:
+    tasks = _in_ready_set(executor, host.release, releases)
+    yield polled.response_times(tasks, higher, supply)
+    if executor.works_off_ready_sets(host.release) and not higher:
         ready = ReadySet(tasks, _is_order_known(executor, host.release), supply)
-        first = improved(polling_points, ready, known)
-        return [dict(first), dict(improved(busy_window_aware, ready, first))]
-    if executor.kind is HostExecutorKind.EVENTS:
-        preempting = Interference.of(higher, supply)
-        return [{task.name: edf.response_time(task, _others(task, tasks), preempting, method=_FIFO) for task in tasks}]
-    return []
-
-
-_FIFO = "busy window, events in the order of their arrival"
-
-
-def _others(task: AnalysedTask, tasks: list[AnalysedTask]) -> list[AnalysedTask]:
-    return [other for other in tasks if other is not task]
+        yield improved(polling_points, ready, known)
+        yield improved(busy_window_aware, ready, known)
+    elif executor.kind is HostExecutorKind.STATIC and not higher and supply is FULL:
+        yield _non_preemptive(tasks, {each.name: executor.rank(each, host.release) for each in executor.callbacks})
+    elif executor.kind is HostExecutorKind.EVENTS:
+        yield fifo.response_times(tasks, higher, supply)
 
 
 def _non_preemptive(tasks: list[AnalysedTask], ranks: dict[str, int]) -> dict[str, Response]:
     """The static executor since jazzy: one callback for each wait by kind, in an order of addresses that is not known."""
     responses = {}
     for task in tasks:
-        others = _others(task, tasks)
+        others = [other for other in tasks if other is not task]
         higher = [other for other in others if ranks[other.name] <= ranks[task.name]]
         blocking = max((other.demand.worst - 1 for other in others if other not in higher), default=0)
         responses[task.name] = non_preemptive.response_time(task, higher, blocking)
@@ -156,6 +154,8 @@ def _loss(callback: HostCallback, executor: HostExecutor, worst: Time, releases:
         sequence = f"it can end {time_text(worst)} after it is due, and periods that pass before its call are skipped"
         return Loss(what="periods", is_certain=False, most=None, sequence=sequence)
     pending = releases.events(callback).eta_plus(worst)
+    if executor.name in releases.windows:
+        pending = min(pending, MOST_PENDING)
     if pending <= callback.depth:
         return None
     sequence = f"{pending} messages can wait, and the queue keeps {callback.depth}"

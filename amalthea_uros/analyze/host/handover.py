@@ -38,20 +38,20 @@ def with_messages_of_others(described: System, solution: Solution) -> Solution:
     solution : with the messages as stated
     """
     stated, settings = solution.context.system, solution.context.settings
+    releases = HostReleases(HostTopics(stated.host, solution)).solve()
     for _ in range(_MAX_PASSES):
-        releases = HostReleases(HostTopics(stated.host, solution)).solve()
         system = solution.context.system
         for transmission in handed_over(releases):
             system = _with_real_times(system, transmission, releases)
         if system is solution.context.system:
             break
         solution = solve(timing_context(system, settings))
-    return _checked(described, stated, solution)
+        releases = HostReleases(HostTopics(stated.host, solution)).solve()
+    return _checked(described, stated, solution, releases)
 
 
-def _checked(described: System, stated: System, solution: Solution) -> Solution:
+def _checked(described: System, stated: System, solution: Solution, releases: HostReleases) -> Solution:
     """The solution with a finding about each message that is not as stated; unknown is what depends on those without known times."""
-    releases = HostReleases(HostTopics(stated.host, solution)).solve()
     changed, errors, unknown = _changes(stated, solution), [], {}
     for transmission in handed_over(releases):
         topic = plain_topic(transmission.topic)

@@ -47,11 +47,9 @@ def in_groups(executor: HostExecutor, tasks: Sequence[AnalysedTask]) -> dict[str
     groups: dict[str, list[AnalysedTask]] = {}
     for callback, task in zip(executor.callbacks, tasks, strict=True):
         groups.setdefault(callback.group, []).append(task)
-    responses = {}
+    responses = dict[str, Response]()
     for group in groups.values():
-        for task in group:
-            response = polled.response_time(task, [other for other in group if other is not task])
-            responses[task.name] = replace(response, method=GROUP_METHOD)
+        responses |= {name: replace(each, method=GROUP_METHOD) for name, each in polled.response_times(group).items()}
     return responses
 
 
@@ -93,15 +91,14 @@ class SharedThreads:
         return best
 
     def _as_one_thread(self) -> dict[str, Response]:
-        responses = {}
-        for task, route in zip(self.tasks, self.routes, strict=True):
-            others = [other for other in self.tasks if other is not task]
-            response = polled.response_time(task, others, self.preempting)
+        responses = polled.response_times(self.tasks, self.preempting)
+        for name, route in zip(responses, self.routes, strict=True):
+            response = responses[name]
             if response.worst is None:
                 raise UnknownError(f"as if one thread had all callbacks: {response.reason}")
             if any(each.is_reentrant for each in route[:-1]):
                 response = replace(response, worst=response.window)
-            responses[task.name] = replace(response, method=METHOD)
+            responses[name] = replace(response, method=METHOD)
         return responses
 
     def _as_chains(self) -> dict[str, Response]:

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
@@ -31,47 +32,71 @@ METHOD = "busy window, callbacks of an executor in any order"
 SOURCE = "Casini, Blass, Luetkebohle, Brandenburg 2019"
 
 
-def response_time(
-    task: AnalysedTask, others: Sequence[AnalysedTask], higher: Sequence[AnalysedTask] = (), supply: Supply = FULL
-) -> Response:
-    """The response time of a callback.
+def response_times(
+    tasks: Sequence[AnalysedTask], higher: Sequence[AnalysedTask] = (), supply: Supply = FULL
+) -> dict[str, Response]:
+    """The response times of all callbacks of an executor, by name.
 
     Parameters
     ----------
-    others : the other callbacks of the executor
     higher : the callbacks of threads that preempt the executor
     """
-    every, best = Interference.of([*others, *higher], supply), task.demand.best
-    if every.overloads_with(task):
-        return unbounded(best, every, task, METHOD, SOURCE)
-    window = Interference.of([task, *others, *higher], supply).window(0, 0)
-    if window is None or task.events.eta_plus(window) > max_jobs(task):
-        reason = "its busy window is too long: the callbacks need nearly all of the core"
-        return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
-    interfering, preempting = Interference.of(others), Interference.of(higher)
-    ends = [(_end(task, after, interfering, preempting, supply), after) for after in releases(task, window)]
-    if any(end is None for end, _ in ends):
-        reason = "its busy window does not end"
-        return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
-    worst = max((end or 0) - after for end, after in ends)
-    return Response(worst=worst, best=best, method=METHOD, source=SOURCE, claim=Claim.BOUND, jobs=len(ends), window=window)
+    if not tasks:
+        return {}
+    *_, before_last, every = Interference.of_first([*higher, *tasks], supply)
+    if before_last.overloads_with(tasks[-1]):
+        return {task.name: unbounded(task.demand.best, before_last, tasks[-1], METHOD, SOURCE) for task in tasks}
+    busy = _BusyWindow(Interference.of(tasks), Interference.of(higher), supply, every.window(0, 0))
+    return {task.name: busy.response_time(task) for task in tasks}
+
+
+@dataclass(frozen=True, slots=True)
+class _BusyWindow:
+    """The longest busy window of an executor; None if it does not end.
+
+    Attributes
+    ----------
+    callbacks : the interference of all its callbacks
+    higher : that of the threads that preempt it
+    """
+
+    callbacks: Interference
+    higher: Interference
+    supply: Supply
+    length: Time | None
+
+    def response_time(self, task: AnalysedTask) -> Response:
+        """The response time of a callback."""
+        best, length = task.demand.best, self.length
+        if length is None or task.events.eta_plus(length) > max_jobs(task):
+            reason = "its busy window is too long: the callbacks need nearly all of the core"
+            return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
+        ends = [(self._end(task, after), after) for after in releases(task, length)]
+        if any(end is None for end, _ in ends):
+            reason = "its busy window does not end"
+            return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
+        worst = max((end or 0) - after for end, after in ends)
+        return Response(worst=worst, best=best, method=METHOD, source=SOURCE, claim=Claim.BOUND, jobs=len(ends), window=length)
+
+    def _end(self, task: AnalysedTask, after: Time) -> Time | None:
+        """The latest end of the last job that is released up to `after`, from the start of the busy window."""
+        own, last = task.demand.max_demand(task.events.eta_plus(after + 1)), task.demand.worst
+        end = after + 1
+        for _ in range(MAX_STEPS):
+            reached = self.supply.time_for(own + self._of_others(task, end - last + 1) + self.higher.in_window(end))
+            if reached <= end:
+                return end
+            if reached > LIMIT:
+                return None
+            end = reached
+        return None
+
+    def _of_others(self, task: AnalysedTask, window: Time) -> Time:
+        """The demand of the other callbacks in a window, from that of all, so that all callbacks share one interference."""
+        return self.callbacks.in_window(window) - task.demand.max_demand(task.events.eta_plus(window))
 
 
 def releases(task: AnalysedTask, window: Time) -> Iterator[Time]:
     """The earliest release of each job in a busy window; of jobs that can be released together, that of the last one counts."""
     for job in range(1, task.events.eta_plus(window) + 1):
         yield task.events.delta_min(job)
-
-
-def _end(task: AnalysedTask, after: Time, others: Interference, higher: Interference, supply: Supply) -> Time | None:
-    """The latest end of the last job that is released up to `after`, from the start of the busy window."""
-    own, last = task.demand.max_demand(task.events.eta_plus(after + 1)), task.demand.worst
-    end = after + 1
-    for _ in range(MAX_STEPS):
-        reached = supply.time_for(own + others.in_window(end - last + 1) + higher.in_window(end))
-        if reached <= end:
-            return end
-        if reached > LIMIT:
-            return None
-        end = reached
-    return None

@@ -3,8 +3,10 @@
 Linux (sched(7)): SCHED_DEADLINE before SCHED_FIFO before SCHED_OTHER; among threads of SCHED_FIFO the higher priority is first, and
 one of equal priority runs until it waits. A reservation of SCHED_DEADLINE provides its budget in each period, and nothing for twice
 the rest of a period in the worst case (I. Shin and I. Lee, RTSS 2003). That holds if each reservation can have a core of its own,
-or all of them fit on their only core; the global EDF of several cores promises less. SCHED_OTHER is fair among its threads, so that
-any other one can delay a thread, unless it is the only one of its core.
+or if global EDF of their m cores meets all deadlines: the sum of their shares is at most m - (m - 1) u with the greatest share u
+(J. Goossens, S. Funk and S. Baruah, Real-Time Systems 25, 2003; for servers S. Baruah, J. Goossens and G. Lipari, RTAS 2002). Threads
+of a multi-threaded executor share a mutex, so that one without budget can hold up the others, which no published method covers.
+SCHED_OTHER is fair among its threads, so that any other one can delay a thread, unless it is the only one of its core.
 """
 
 from __future__ import annotations
@@ -83,11 +85,16 @@ def _reserved(executor: HostExecutor, rivals: list[HostExecutor], host: Host) ->
     """The reservation of an executor; rivals have one on cores of it."""
     thread, cores, reserved = executor.thread, _cores(executor, host), [executor, *rivals]
     if executor.kind is HostExecutorKind.MULTI_THREADED:
-        raise UnknownError(f"no published method covers the reservation of the multi-threaded executor {executor.name!r}")
-    threads = sum(each.threads for each in reserved)
-    share = sum(each.threads * Fraction(each.thread.budget, each.thread.period) for each in reserved)
-    if threads > len(cores) and (len(cores) > 1 or share > 1):
-        raise UnknownError(f"more reservations than cores on {executor.computer!r}: that of {executor.name!r} can be late")
+        raise UnknownError(
+            f"a thread of {executor.name!r} that has used its budget up can hold up the others, which no published method covers"
+        )
+    shares = [Fraction(each.thread.budget, each.thread.period) for each in reserved for _ in range(each.threads)]
+    guaranteed = len(cores) - (len(cores) - 1) * max(shares)
+    if len(shares) > len(cores) and sum(shares) > guaranteed:
+        raise UnknownError(
+            f"the reservation of {executor.name!r} can be late: those on its cores need {float(sum(shares)):.3g} cores, and global EDF "
+            f"guarantees no more than {float(guaranteed):.3g}"
+        )
     if any(_cores(each, host) != cores for each in rivals):
         raise UnknownError(
             f"the reservation of {executor.name!r} shares some of its cores with others; set the same cores for all"

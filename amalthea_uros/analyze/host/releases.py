@@ -7,6 +7,7 @@ takes time, the jitter is what the times before vary (K. Richter 2005). It is fo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from amalthea_uros._internal.records import dataclass, field
@@ -14,7 +15,8 @@ from amalthea_uros.analyze.host import polled
 from amalthea_uros.analyze.host.multi_threaded import SharedThreads, has_thread_for_each_group, in_groups
 from amalthea_uros.analyze.host.processor import HostProcessor, processor_of
 from amalthea_uros.analyze.host.topics import HostTopics, delayed
-from amalthea_uros.analyze.response_times.task import AnalysedTask
+from amalthea_uros.analyze.host.windows import Windows
+from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.host import HostCallback, HostExecutor, HostExecutorKind
 from amalthea_uros.perf.network import Direction
@@ -38,12 +40,14 @@ class HostReleases:
     latencies : from the release of the first callback of the route to the end of a callback, by name
     reasons : why nothing is known of an executor
     processors : by the names of executors
+    windows : of the executors for which these bound latencies, by name
     """
 
     topics: HostTopics
     latencies: dict[str, Response] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     processors: dict[str, HostProcessor] = field(default_factory=dict)
+    windows: dict[str, Windows] = field(default_factory=dict)
 
     def solve(self) -> HostReleases:
         """Find the least fixed point, executor by executor; what has none is unknown."""
@@ -73,6 +77,9 @@ class HostReleases:
         for executor in host.executors:
             try:
                 self.processors[executor.name] = processor_of(executor, host)
+                if self._has_windows(executor):
+                    length = sum(_most(callback) for callback in executor.callbacks)
+                    self.windows[executor.name] = Windows(length)
             except UnknownError as error:
                 self.reasons.setdefault(executor.name, str(error))
         limit = 0
@@ -89,6 +96,13 @@ class HostReleases:
         for executor in host.executors:
             self.reasons.setdefault(executor.name, _GROWS)
 
+    def _has_windows(self, executor: HostExecutor) -> bool:
+        """Whether its windows bound latencies: nothing preempts it, and all of its routes begin with timers."""
+        processor = self.processors[executor.name]
+        is_alone = not processor.higher and not processor.reservations and processor.supply is FULL
+        is_suitable = is_alone and executor.works_off_ready_sets(self.topics.host.release)
+        return is_suitable and all(self.topics.route(each)[0].period is not None for each in executor.callbacks)
+
     def _greatest(self, executor: HostExecutor) -> Time:
         """The greatest latency of the callbacks of an executor so far."""
         latencies = (self.latencies.get(callback.name) for callback in executor.callbacks)
@@ -103,14 +117,12 @@ class HostReleases:
             if executor.kind is HostExecutorKind.MULTI_THREADED:
                 self._solve_threads(executor)
                 return
-            processor, tasks = self.processors[executor.name], self.tasks(executor)
-            higher = self.preempting(executor)
-            for task in tasks:
-                others = [other for other in tasks if other is not task]
-                response = polled.response_time(task, others, higher, processor.supply)
-                self.latencies[task.name] = response
-                if response.worst is None:
-                    raise UnknownError(response.reason)
+            supply, windows = self.processors[executor.name].supply, self.windows.get(executor.name)
+            responses = polled.response_times(self.tasks(executor), self.preempting(executor), supply)
+            if windows is not None:
+                routes = map(self.topics.route, executor.callbacks)
+                responses = {route[-1].name: windows.improved(responses[route[-1].name], route) for route in routes}
+            self._use(responses)
         except UnknownError as error:
             self.reasons[executor.name] = str(error)
 
@@ -120,7 +132,9 @@ class HostReleases:
             routes = [self.topics.route(callback) for callback in executor.callbacks]
             self.latencies |= SharedThreads(executor, cores, routes, tasks, self.preempting(executor)).latencies()
             return
-        responses = in_groups(executor, tasks)
+        self._use(in_groups(executor, tasks))
+
+    def _use(self, responses: Mapping[str, Response]) -> None:
         self.latencies |= responses
         for response in responses.values():
             if response.worst is None:
@@ -142,12 +156,8 @@ class HostReleases:
         return [self._task(each, self.events(each)) for each in executor.callbacks]
 
     def _task(self, callback: HostCallback, events: EventModel) -> AnalysedTask:
-        worst = callback.execution.most
-        if worst is None:
-            raise UnknownError(f"the execution time of {callback.name!r} has no maximum")
-        return AnalysedTask(
-            name=callback.name, events=events, demand=MultiframeDemand.constant(Ticks(worst), Ticks(callback.execution.least))
-        )
+        demand = MultiframeDemand.constant(Ticks(_most(callback)), Ticks(callback.execution.least))
+        return AnalysedTask(name=callback.name, events=events, demand=demand)
 
     def best(self, callback: HostCallback) -> Time:
         """The least time from the release of the first callback of the route to the end of a callback."""
@@ -195,5 +205,11 @@ class HostReleases:
         if not sources:
             raise UnknownError(f"nobody that is described publishes {topic!r}; set 'rate' of the topic")
         if latency.most is None:
-            raise UnknownError(f"the latency of the topic {topic!r} is not specified")
+            raise UnknownError(f"the latency of the topic {topic!r} is not specified; set 'latency' of it or of the host")
         return aggregated(tuple(delayed(each, latency.most - latency.least) for each in sources))
+
+
+def _most(callback: HostCallback) -> Time:
+    if callback.execution.most is None:
+        raise UnknownError(f"the execution time of {callback.name!r} has no maximum")
+    return callback.execution.most

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 from amalthea_uros._internal.graphs import circles
@@ -52,9 +52,18 @@ class HostTopics:
         """The topics by name."""
         return {topic.name: topic for topic in self.host.topics}
 
-    def publishers(self, topic: str) -> list[HostCallback]:
-        """The callbacks of the host that publish a topic."""
-        return [callback for callback in self.host.callbacks if topic in callback.publishes]
+    @cached_property
+    def _publishers(self) -> Mapping[str, list[HostCallback]]:
+        """The callbacks of the host that publish a topic, by its name, each as often as a call of it does."""
+        publishers: dict[str, list[HostCallback]] = {}
+        for callback in self.host.callbacks:
+            for topic in callback.publishes:
+                publishers.setdefault(topic, []).append(callback)
+        return publishers
+
+    def publishers(self, topic: str) -> Sequence[HostCallback]:
+        """The callbacks of the host that publish a topic, each as often as a call of it does."""
+        return self._publishers.get(topic, ())
 
     def circles(self) -> list[set[str]]:
         """The callbacks that publish to each other in a circle, by name."""
@@ -89,7 +98,7 @@ class HostTopics:
 
     def _is_served_with(self, one: HostCallback, other: HostCallback) -> bool:
         executor = self.executor_of[one.name]
-        is_in_executor = executor == self.executor_of[other.name]
+        is_in_executor = executor.name == self.executor_of[other.name].name
         return is_in_executor and (executor.name not in self.by_group or one.group == other.group)
 
     def route(self, callback: HostCallback) -> tuple[HostCallback, ...]:
@@ -99,12 +108,19 @@ class HostTopics:
         ------
         UnknownError : they publish in a circle.
         """
-        route = [callback]
-        while (before := self.source(route[0])) is not None:
-            if before in route:
-                raise UnknownError(f"the messages of {callback.name!r} are published in a circle")
-            route.insert(0, before)
-        return tuple(route)
+        if callback.name not in self._routes:
+            route = [callback]
+            while (before := self.source(route[0])) is not None:
+                if before in route:
+                    raise UnknownError(f"the messages of {callback.name!r} are published in a circle")
+                route.insert(0, before)
+            self._routes[callback.name] = tuple(route)
+        return self._routes[callback.name]
+
+    @cached_property
+    def _routes(self) -> dict[str, tuple[HostCallback, ...]]:
+        """The routes that were asked for, by their last callbacks."""
+        return {}
 
     def from_controller(self, transmission: Transmission) -> EventModel:
         """The messages of a controller when the agent publishes them.

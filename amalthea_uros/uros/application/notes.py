@@ -58,9 +58,10 @@ class Notes:
         owner : what the name would have to be defined in, e.g. "node 'n'"; "" for the file
         """
         scope = f" in {owner}" if owner else ""
-        self.error("APP001", f"undefined {kind} {name!r}{scope}", location, self._suggestion(kind, name, defined))
+        self.error("APP001", f"undefined {kind} {name!r}{scope}", location, self.suggestion(kind, name, defined))
 
-    def _suggestion(self, kind: str, name: str, defined: Iterable[str]) -> str:
+    def suggestion(self, kind: str, name: str, defined: Iterable[str]) -> str:
+        """What to do about a name that is not defined."""
         if self._suggestions.comparisons <= 0:
             return "Define it, or correct the name."
         known = sorted(set(defined))

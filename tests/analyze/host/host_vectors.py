@@ -48,7 +48,14 @@ def _thread(executor):
     return HostThread(policy=HostPolicy.FIFO, priority=executor.get("priority", 1), cores=cores)
 
 
-def _callback(each):
+def registers(system):
+    """The pairs of callbacks of which the second one reads what the first one has left; each is a variable."""
+    by_name = {each["name"]: each for each in system["callbacks"]}
+    pairs = {pair for chain in system.get("chains", ()) for pair in pairwise(chain["path"])}
+    return sorted(pair for pair in pairs if by_name[pair[1]].get("topic") not in by_name[pair[0]].get("publishes", ()))
+
+
+def _callback(each, pairs):
     group = each.get("group", "default")
     return HostCallback(
         name=each["name"],
@@ -58,6 +65,8 @@ def _callback(each):
         topic=each.get("topic"),
         depth=each.get("depth", 10),
         publishes=tuple(each.get("publishes", ())),
+        reads=tuple(" to ".join(pair) for pair in pairs if pair[1] == each["name"]),
+        writes=tuple(" to ".join(pair) for pair in pairs if pair[0] == each["name"]),
         group=group,
         is_reentrant=group == "reentrant",
     )
@@ -68,6 +77,7 @@ def host_of(system):
     latencies = {each["name"]: each["latency"] for each in system.get("topics", ())}
     sources = {each["topic"]: each for each in system.get("sources", ())}
     names = {topic for each in system["callbacks"] for topic in (*each.get("publishes", ()), each.get("topic")) if topic}
+    pairs = registers(system)
     is_late = any(executor["distro"] == "jazzy" for executor in system["executors"])
     return Host(
         release=RosRelease.JAZZY if is_late else RosRelease.FOXY,
@@ -79,7 +89,7 @@ def host_of(system):
                 kind=TYPES[executor["type"]],
                 thread=_thread(executor),
                 threads=executor.get("threads", 1),
-                callbacks=tuple(_callback(each) for each in system["callbacks"] if each["executor"] == executor["name"]),
+                callbacks=tuple(_callback(each, pairs) for each in system["callbacks"] if each["executor"] == executor["name"]),
             )
             for executor in system["executors"]
         ),
@@ -95,13 +105,9 @@ def host_of(system):
     )
 
 
-def linked_chains(system):
-    """The chains of a system of which each callback subscribes to what the one before publishes."""
-    by_name = {each["name"]: each for each in system["callbacks"]}
-    for chain in system.get("chains", ()):
-        pairs = [(by_name[one], by_name[other]) for one, other in pairwise(chain["path"])]
-        if all(other.get("topic") in one.get("publishes", ()) for one, other in pairs):
-            yield chain["name"], chain["path"]
+def paths(system):
+    """The chains of a system by name."""
+    return {chain["name"]: chain["path"] for chain in system.get("chains", ())}
 
 
 def chain_of(name, path):

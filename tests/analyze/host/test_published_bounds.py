@@ -2,16 +2,23 @@
 
 import json
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
+from host_vectors import every_entry, host_of, paths, with_chains
 from support import SHARED
 
-from amalthea_uros.analyze.host import busy_window_aware, polled, polling_points
+from amalthea_uros.analyze.host import busy_window_aware, fifo, polled, polling_points
 from amalthea_uros.analyze.host.reentrant import ReentrantChain, latencies
 from amalthea_uros.analyze.host.starvation_free import ReadySet, improved
-from amalthea_uros.analyze.response_times import edf, non_preemptive
-from amalthea_uros.analyze.response_times.busy_window import Interference
+from amalthea_uros.analyze.host.topics import HostTopics
+from amalthea_uros.analyze.host.windows import Windows
+from amalthea_uros.analyze.response_times import non_preemptive
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask, Supply
+from amalthea_uros.analyze.system import analyze_system
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.perf.host import Host, HostCallback, HostComputer, HostExecutor, HostPolicy, HostThread, HostTopic
+from amalthea_uros.perf.network import Span
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.event_models.models import PeriodicEvents
 
@@ -42,10 +49,6 @@ def task(callback, sources):
     return AnalysedTask(name=callback["name"], events=PeriodicEvents(period, source.get("jitter", 0)), demand=demand)
 
 
-def without(one, tasks):
-    return [each for each in tasks if each is not one]
-
-
 def results(system, executor):
     """The bounds of all methods for one thread, by method and callback."""
     is_static = executor["type"] == "static"
@@ -55,7 +58,7 @@ def results(system, executor):
     if reserved := executor.get("reservation"):
         budget, period = reserved["budget"], reserved["period"]
         supply = Supply(budget=budget, period=period, wait=2 * (period - budget))
-    any_order = {each.name: polled.response_time(each, without(each, tasks), supply=supply) for each in tasks}
+    any_order = polled.response_times(tasks, supply=supply)
     yield "ecrts19-polled", any_order
     for method, is_ordered in (("rtss21-rr", True), ("rtss21-rr-unordered", False)):
         yield method, improved(polling_points, ReadySet(tasks, is_ordered, supply), any_order)
@@ -63,7 +66,7 @@ def results(system, executor):
     ready, known = ReadySet(tasks, True, supply), {name: response.worst for name, response in any_order.items()}
     after_one = {task.name: busy_window_aware.latest(index, ready, known) for index, task in enumerate(tasks)}
     yield "rtss21-bw", {name: replace(response, worst=after_one[name]) for name, response in any_order.items()}
-    yield "fifo", {each.name: edf.response_time(each, without(each, tasks), Interference.of([])) for each in tasks}
+    yield "fifo", fifo.response_times(tasks)
     blocking = [max((other.demand.worst - 1 for other in tasks[index + 1 :]), default=0) for index in range(len(tasks))]
     yield (
         "np-fp",
@@ -96,6 +99,40 @@ def test_published_bounds(system, executor, entry):
             assert all(response.worst >= observed[name]["response"] for name, response in responses.items())
 
 
+def windows(name):
+    """The system of a name in the vectors with its windows and bounds."""
+    entry = next((each for each in every_entry() if each["system"]["name"] == name), None)
+    if entry is None:
+        pytest.skip("the vectors are not at hand")
+    host = host_of(entry["system"])
+    return entry, host, Windows(sum(callback.execution.most for callback in host.callbacks))
+
+
+@pytest.mark.parametrize("kind", [f"{load}-{kinds}" for load in ("over", "under") for kinds in ("SS", "ST", "TS", "TT")])
+def test_published_bounds_from_any_time(kind):
+    """A chain is in parts: of messages from its timer on, and from a timer to what reads a variable, and to the end of the part."""
+    entry, host, bound = windows(f"fusion-{kind}")
+    topics = HostTopics(host, analyze_system(with_chains(host, [])).solution)
+    for name, path in paths(entry["system"]).items():
+        callbacks = [topics.callbacks[each] for each in path]
+        last = [one for one, other in pairwise(callbacks) if topics.source(other) != one] + callbacks[-1:]
+        assert sum(bound.from_any_time(topics.route(each)) for each in last) == entry["bounds"]["rtss22-e2e"][name]
+
+
+def test_a_chain_of_an_overloaded_executor_takes_as_long_as_its_windows():
+    """The player finds 2,159, in six windows of 360; one tick less, as a timer that is due at the poll is in its set."""
+    entry, host, _ = windows("fusion-over-SS")
+    chains = analyze_system(with_chains(host, paths(entry["system"]).items())).chains
+    assert chains["from-1"].worst == entry["observed"]["from-1"]["latency"] == 6 * 360 - 1
+
+
+@pytest.mark.parametrize(("period", "worst"), [(100, 100 + 5), (1, 5 + 5)])
+def test_the_next_call_of_a_timer_that_is_alone(period, worst):
+    """It began just before: the next one begins when it is due, or when this one ends, and takes 5."""
+    timer = HostCallback(name="t", kind=HandleKind.TIMER, period=period, execution=Span(least=5, most=5))
+    assert Windows(5).from_any_time([timer]) == worst
+
+
 def constant(name, period, cost, jitter=0):
     return AnalysedTask(name=name, events=PeriodicEvents(period, jitter), demand=MultiframeDemand.constant(cost))
 
@@ -103,12 +140,27 @@ def constant(name, period, cost, jitter=0):
 def test_a_callback_waits_for_the_whole_ready_set():
     """A timer that is due just after the poll waits for three callbacks of 20, and takes 5."""
     timer, *others = (constant("t", 100, 5), *(constant(f"s{index}", 100, 20) for index in range(3)))
-    assert polled.response_time(timer, others).worst == 3 * 20 + 5
+    assert polled.response_times([timer, *others])["t"].worst == 3 * 20 + 5
+
+
+def test_two_messages_of_one_call_are_two():
+    """The second one waits for the first one, which takes 20."""
+    rules = {"kind": HandleKind.TIMER, "period": 100, "execution": Span(least=5, most=5), "publishes": ("m", "m")}
+    taken = {"kind": HandleKind.SUBSCRIPTION, "topic": "m", "execution": Span(least=20, most=20)}
+    callbacks = (HostCallback(name="t", **rules), HostCallback(name="s", **taken))
+    thread = HostThread(policy=HostPolicy.FIFO, priority=1, cores=(0,))
+    host = Host(
+        computers=(HostComputer(name="pc", cores=1),),
+        executors=(HostExecutor(name="E", computer="pc", thread=thread, callbacks=callbacks),),
+        topics=(HostTopic(name="m", latency=Span(most=0)),),
+    )
+    (executor,) = analyze_system(with_chains(host, [])).host
+    assert executor.handles["s"].response.worst >= 2 * 20
 
 
 def test_a_thread_of_higher_priority_preempts_it():
     """Of 12 after 5 of the other thread, which comes again after 20 only."""
-    assert polled.response_time(constant("l", 40, 12), [], [constant("h", 20, 5)]).worst == 5 + 12
+    assert polled.response_times([constant("l", 40, 12)], [constant("h", 20, 5)])["l"].worst == 5 + 12
 
 
 def test_a_burst_is_called_once_for_each_polling_point():
@@ -117,7 +169,7 @@ def test_a_burst_is_called_once_for_each_polling_point():
     It is pending at one polling point, so that one of them comes before it at most, and one more if it is called before it.
     """
     burst, other = constant("burst", 100, 5, jitter=200), constant("other", 100, 20)
-    known = {each.name: polled.response_time(each, without(each, [burst, other])) for each in (burst, other)}
+    known = polled.response_times([burst, other])
     assert known["other"].worst == 3 * 5 + 20
     assert improved(polling_points, ReadySet([burst, other], is_ordered=True), known)["other"].worst == 2 * 5 + 20
     assert improved(polling_points, ReadySet([other, burst], is_ordered=True), known)["other"].worst == 1 * 5 + 20

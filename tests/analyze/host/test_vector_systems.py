@@ -4,7 +4,7 @@ from collections import defaultdict
 from statistics import median
 
 import pytest
-from host_vectors import entries, every_entry, host_of, linked_chains, with_chains
+from host_vectors import entries, every_entry, host_of, paths, with_chains
 from support import ROOT
 
 from amalthea_uros.analyze.system import analyze_system
@@ -12,13 +12,12 @@ from amalthea_uros.analyze.system import analyze_system
 #: Methods of the vectors that are used: no bound is above theirs where they hold.
 USED = {
     *("ecrts19-polled", "ecrts19-prefix", "ecrts19-chain", "rtss21-rr", "rtss21-rr-unordered", "rtss21-bw"),
-    *("fifo", "polled-under-fp", "rtss22-jiang"),
+    *("fifo", "polled-under-fp", "rtss22-e2e", "rtss22-jiang"),
 }
 #: The others, and where they are said to be on the page.
 NOT_USED = {
     "ecrts19-timer": "timers before all others",
     "np-fp": "the order within a kind",
-    "rtss22-e2e": "variables and overloaded executors",
 }
 
 
@@ -30,23 +29,10 @@ def test_every_method_of_the_vectors_is_used_or_the_page_says_why_not():
     assert [words for words in NOT_USED.values() if words not in page] == []
 
 
-@pytest.mark.skipif(not list(entries()), reason="the vectors are not at hand")
-def test_what_the_page_says_about_a_method_that_is_not_used():
-    """The published bound also has the period of the first timer, for an input that comes just too late for it."""
-    (entry,) = (entry for entry in entries() if entry["system"]["name"] == "fusion-under-SS")
-    system = entry["system"]
-    paths = dict(linked_chains(system))
-    period = next(each["period"] for each in system["callbacks"] if each["name"] == paths["from-1"][0])
-    ours = analyze_system(with_chains(host_of(system), paths.items())).chains["from-1"].worst
-    theirs = entry["bounds"]["rtss22-e2e"]["from-1"] - period
-    assert entry["observed"]["from-1"]["latency"] <= ours < theirs
-    assert f"{theirs:,} instead of {ours:,}" in (ROOT / "docs" / "ros2-host.md").read_text()
-
-
 @pytest.mark.parametrize("entry", [pytest.param(entry, id=entry["system"]["name"]) for entry in entries()])
 def test_no_bound_is_below_an_observed_value_or_above_a_published_one(entry):
     system, observed = entry["system"], entry["observed"]
-    analysis = analyze_system(with_chains(host_of(system), linked_chains(system)))
+    analysis = analyze_system(with_chains(host_of(system), paths(system).items()))
     handles = {handle.name: handle for executor in analysis.host for handle in executor.handles}
     for callback in system["callbacks"]:
         name, worst = callback["name"], handles[callback["name"]].response.worst
@@ -54,7 +40,7 @@ def test_no_bound_is_below_an_observed_value_or_above_a_published_one(entry):
         assert worst is None or worst >= observed[name]["response"], name
         if entry["lost"].get(name) and worst is not None:
             assert handles[name].lost is not None
-    for name, path in linked_chains(system):
+    for name, path in paths(system).items():
         if len(path) > 1 and (bound := analysis.chains[name].worst_if_not_lost) is not None:
             assert bound >= observed[name]["latency"], name
     for method in USED.intersection(name for name, verdict in entry["holds"].items() if verdict == "holds"):
@@ -75,12 +61,12 @@ def test_groups_that_can_starve_are_unknown():
 def ratios(entry):
     """The bounds divided by the largest observed values: of callbacks, and of chains of at least two; only those that are known."""
     system, observed = entry["system"], entry["observed"]
-    analysis = analyze_system(with_chains(host_of(system), linked_chains(system)))
+    analysis = analyze_system(with_chains(host_of(system), paths(system).items()))
     for executor in analysis.host:
         for handle in executor.handles:
             if handle.response.worst is not None and handle.name in observed:
                 yield "callbacks", handle.response.worst / observed[handle.name]["response"]
-    for name, path in linked_chains(system):
+    for name, path in paths(system).items():
         bound = analysis.chains[name].worst_if_not_lost
         if len(path) > 1 and bound is not None:
             yield "chains", bound / observed[name]["latency"]
