@@ -61,8 +61,7 @@ def keys_at(path: Path, kind: type[DescriptionSection]) -> dict[str, Schema]:
 
 def key_at(path: Path, key: str, kind: type[DescriptionSection]) -> Schema | None:
     """The schema of the value of a key, also of a name that the author gives to an item; None if there is no such key."""
-    whole = schema_of(kind)
-    return next((_described(value, whole) for value in schemas_at((*path, key), kind)), None)
+    return next((_described(value, schema_of(kind)) for value in schemas_at((*path, key), kind)), None)
 
 
 def _described(schema: Schema, whole: Schema) -> Schema:
