@@ -11,7 +11,6 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.design.changes.apply import apply, check_key, describe
 from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
-from amalthea_uros.design.model_attributes.origin import ModelOrigin
 from amalthea_uros.design.optimize.designs import Designs, RebuiltStructure
 from amalthea_uros.design.optimize.rules import CapacityRule, rules
 from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, PriorityOrder, Space
@@ -93,9 +92,10 @@ def design_space(
     """
     stated_offers = () if source is None else tuple(each for each in wishes.offers if is_stated(each, source, assembly))
     builder = _Builder(assembly, present, wishes, stated_offers)
-    model = source if isinstance(source, ModelOrigin) else None
     described = (
-        DescribedCallbacks.of(source) if (stated_offers and model is None) or _needs_description(assembly, wishes) else None
+        DescribedCallbacks.of(source)
+        if (stated_offers and assembly is not None) or _needs_description(assembly, wishes)
+        else None
     )
     _check_keep(wishes.keep, present.system, described)
     offered = () if source is None else tuple(offered_values(source, stated_offers))
@@ -117,8 +117,8 @@ def design_space(
     def build(own: Candidate) -> RebuiltStructure:
         if described is not None:
             return described.built(own, completed)
-        assert model is not None, "nothing else states values"
-        return completed(own, model.configure(own).system, None)
+        assert source is not None, "nothing else states values"
+        return completed(own, source.configure(own).system, None)
 
     designs = Designs(
         present=present,
