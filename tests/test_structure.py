@@ -40,7 +40,7 @@ LINES = {
     "names": 17,
     "perf": 1810,
     "platforms": 0,
-    "report": 8654,
+    "report": 8668,
     "services": 2640,
     "simulate": 8634,
     "source": 3550,

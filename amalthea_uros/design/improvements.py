@@ -188,19 +188,23 @@ class Trial:
     def prepared(self, candidate: ImprovingChange) -> Iterator[tuple[ImprovingChange, Configuration]]:
         """A candidate with its changed system; nothing if it is impossible, or changes how often messages come."""
         try:
-            if self.source is not None and candidate.changes and not candidate.is_stated:
-                if _applied(candidate, self.present) is None:
+            if not candidate.is_stated:
+                if _arrivals(apply(*self.present, candidate.changes)) != _arrivals(self.present):
                     return
-                edited = edit_description(self.source.text, self.source.path, candidate.changes)
-                candidate = replace(candidate, changes=self.source.changes_of(edited.assignments), is_stated=True)
-            if self.source is None:
-                changed = _applied(candidate, self.present)
-            else:
-                changed = candidate.with_communication(self.source.configure(candidate.changes))
+                candidate = self._in_description(candidate)
+            changed = (
+                apply(*self.present, candidate.changes) if self.source is None else self.source.configure(candidate.changes)
+            )
         except InvalidArgumentError:
             return
-        if changed is not None:
-            yield candidate, changed
+        yield candidate, candidate.with_communication(changed)
+
+    def _in_description(self, candidate: ImprovingChange) -> ImprovingChange:
+        """A candidate with what a description states for it, if there is one; InvalidArgumentError if it states nothing."""
+        if self.source is None or not candidate.changes:
+            return candidate
+        edited = edit_description(self.source.text, self.source.path, candidate.changes)
+        return replace(candidate, changes=self.source.changes_of(edited.assignments), is_stated=True)
 
     def tried(self, candidate: ImprovingChange, changed: Configuration, limit: Time | None) -> Improvement | None:
         """The improvement by a changed system; None if the latency is not shorter than a limit (None: has no bound)."""
@@ -266,17 +270,6 @@ def check_explained(quantity: object) -> None:
     """
     if quantity not in EXPLAINED:
         raise InvalidArgumentError(f"cannot explain {str(quantity)!r}; expected one of {', '.join(EXPLAINED)}")
-
-
-def _applied(candidate: ImprovingChange, present: Configuration) -> Configuration | None:
-    """The changed system; None if the change is impossible, or changes how often messages come."""
-    try:
-        changed = apply(*present, candidate.changes)
-    except InvalidArgumentError:
-        return None
-    if _arrivals(changed) != _arrivals(present):
-        return None
-    return candidate.with_communication(changed)
 
 
 def _arrivals(configuration: Configuration) -> list[tuple[str, Time | None]]:

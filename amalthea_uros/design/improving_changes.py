@@ -22,6 +22,11 @@ from amalthea_uros.units import Time, frequency_text, time_text
 
 #: Where no periods are offered, also these parts of a period: the harmonic ones next to it.
 _DIVISORS = (2, 5, 10)
+#: Keys of values that are also tried together, because each limits what the other one gains: a sleep takes at least a tick, and a
+#: driver that sends a chunk in each tick sends no more of them on a faster line.
+_LIMITING_EACH_OTHER = {("tick", "sleep"), ("write", "baud_rate")}
+#: LET is left out: a job reads at its release and writes at the end of its period, so none reads later or writes earlier than now.
+_NOT_LATER = (Communication.IMPLICIT, Communication.EXPLICIT)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,18 +175,19 @@ def _of_description(source: DescriptionOrigin, cores: Sequence[str]) -> Iterator
     every = list(suggestions(source.keys, cores))
     for each in every:
         yield ImprovingChange(text=each.text, changes=(each.change,), is_stated=True)
-        # A sleep is at least a tick long, so that neither is of use alone.
-        for tick in (other for other in every if (other.change.key, each.change.key) == ("tick", "sleep")):
-            changes = (tick.change, each.change)
-            yield ImprovingChange(text=f"{tick.text}, {each.text}", changes=changes, is_stated=True, count=2)
+        for other in every:
+            if (other.change.key, each.change.key) in _LIMITING_EACH_OTHER:
+                changes = (other.change, each.change)
+                yield ImprovingChange(text=f"{other.text}, {each.text}", changes=changes, is_stated=True, count=2)
 
 
 def _communication(explanation: ChainExplanation, present: Configuration) -> Iterator[ImprovingChange]:
     stated = present.settings.communication
-    before = str(stated).lower() if stated is not None else explanation.chain.communication
-    for each in Communication:
-        if str(each).lower() != before:
-            yield ImprovingChange(text=f"communication {before or 'as modelled'} -> {str(each).lower()}", communication=each)
+    now = explanation.chain.communication if stated is None else str(stated).lower()
+    before = now if now in map(str.lower, Communication) else "as modelled"
+    for each in _NOT_LATER:
+        if str(each).lower() != now:
+            yield ImprovingChange(text=f"communication {before} -> {str(each).lower()}", communication=each)
 
 
 def _of_process(name: str, key: str, before: str, after: str) -> ImprovingChange:

@@ -14,7 +14,7 @@ from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.editor.hover import MAX_LENGTH
 from amalthea_uros.spec.cursor import place_of_key, place_of_value
 from amalthea_uros.spec.description import Description
-from amalthea_uros.spec.schema_places import keys_at, words_at
+from amalthea_uros.spec.schema_places import key_at, keys_at, words_at
 
 #: A key, and what is before and after it.
 _KEY = re.compile(r"(?<![^\s{,\[])([A-Za-z_]\w*)(?=\s*:(?:\s|$))")
@@ -44,8 +44,8 @@ def key_hover(document: TextDocument, position: types.Position) -> types.Hover |
     if key is None:
         return None
     cursor = place_of_key(_until(document, position.line, key.start()))
-    schema = None if cursor is None else keys_at(cursor.path, Description).get(key[1])
-    if schema is None:
+    schema = None if cursor is None else key_at(cursor.path, key[1], Description)
+    if schema is None or "description" not in schema:
         return None
     where = types.Range(document.position(position.line, key.start()), document.position(position.line, key.end()))
     text = f"**{key[1]}**: {_meaning(schema)}"
@@ -96,4 +96,4 @@ def _meaning(schema: Mapping[str, Any]) -> str:
     default = schema.get("default")
     is_shown = isinstance(default, str | bool) and "pattern" not in schema
     stated = f" Default: `{str(default).lower() if isinstance(default, bool) else default}`." if is_shown else ""
-    return f"{schema.get('description', 'no description')}{stated}"
+    return f"{schema['description']}{stated}"

@@ -189,7 +189,7 @@ def simulate_campaign(
     changed.check_sweeps(sweeps)
     _require_labels(options.labels, changed.system)
     require_bounded_work(changed.system, options, len(runs))
-    job, executor = SimulationJob(changed.origin, options, changed.changes), executor_for(len(runs), workers, cluster)
+    job, executor = SimulationJob(changed.origin, changed.changes, options), executor_for(len(runs), workers, cluster)
     return CampaignResult(
         paths=changed.opened.paths,
         options=options,

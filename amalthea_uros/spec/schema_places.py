@@ -53,10 +53,21 @@ def schemas_at(path: Path, kind: type[DescriptionSection]) -> list[Schema]:
 
 
 def keys_at(path: Path, kind: type[DescriptionSection]) -> dict[str, Schema]:
-    """The keys of the mapping at a place, with the schemas of their values."""
+    """The keys of the mapping at a place, with the schemas of their values and what they mean."""
     whole = schema_of(kind)
     every = (variant for one in schemas_at(path, kind) for variant in variants(one, whole))
-    return {key: value for variant in every for key, value in variant.get("properties", {}).items()}
+    return {key: _described(value, whole) for variant in every for key, value in variant.get("properties", {}).items()}
+
+
+def key_at(path: Path, key: str, kind: type[DescriptionSection]) -> Schema | None:
+    """The schema of the value of a key, also of a name that the author gives to an item; None if there is no such key."""
+    return next((_described(value, schema_of(kind)) for value in schemas_at((*path, key), kind)), None)
+
+
+def _described(schema: Schema, whole: Schema) -> Schema:
+    """A schema that says what the value means, by what it refers to if it does not say so itself."""
+    meaning = next((each["description"] for each in variants(schema, whole) if "description" in each), None)
+    return schema if meaning is None else {"description": meaning, **schema}
 
 
 def words_at(path: Path, kind: type[DescriptionSection]) -> list[str]:

@@ -223,7 +223,7 @@ def test_a_cluster_without_the_package(monkeypatch):
 def test_the_job_of_a_simulation_can_be_sent_without_the_model_that_it_comes_from(path):
     options = Options(duration=Duration(10**12), settings=Settings(scale=Fraction(1, 3)))
     origin = SystemOrigin(Configuration(open_system([path]).system, options.settings))
-    job = SimulationJob(origin, options, (Change("A", "x", "1ms"),))
+    job = SimulationJob(origin, (Change("A", "x", "1ms"),), options)
     data = pickle.dumps(job)
     assert pickle.loads(data) == job
     assert b"metamodel" not in data

@@ -1,6 +1,10 @@
 """Completion, the meaning of keys, and quick fixes in an app.yaml, while it is written."""
 
+import re
+
 import pytest
+from effort import every
+from support import ROOT
 
 pytest.importorskip("pygls")
 
@@ -10,6 +14,8 @@ from amalthea_uros.editor.diagnostics import diagnostics_of
 from amalthea_uros.editor.document import TextDocument
 from amalthea_uros.editor.keys import completions, key_hover
 from amalthea_uros.editor.quick_fixes import quick_fixes
+from amalthea_uros.spec.description import Description
+from amalthea_uros.spec.schema_places import places_of_keys
 
 START = "amuros: 1\nname: a\nhardware: single-core\n"
 
@@ -98,6 +104,18 @@ def test_what_a_finding_suggests_is_a_quick_fix(tmp_path, line, repaired):
     (change,) = action.edit.changes[made.uri]
     assert edited(text, change).endswith(repaired)
     assert action.is_preferred
+
+
+@pytest.mark.parametrize("path", every(3, sorted((ROOT / "samples").glob("*.yaml"))), ids=lambda path: path.stem)
+def test_a_letter_that_is_missing_in_a_key_comes_back(path):
+    text = path.read_text()
+    known = places_of_keys(Description).keys() - {"amuros"}
+    keys = [found for found in re.finditer(r"^ *(?:- )?\{?([a-z_]{4,}):\s", text, re.MULTILINE) if found[1] in known]
+    for found in every(9, keys):
+        wrong = text[: found.start(1) + 1] + text[found.start(1) + 2 :]
+        made = TextDocument(path.as_uri(), path, wrong, 1)
+        actions = [each for each in quick_fixes(made, diagnostics_of(made), None) if each.title == f"Replace by '{found[1]}'"]
+        assert edited(wrong, actions[0].edit.changes[made.uri][0]) == text
 
 
 def test_a_finding_can_be_accepted(tmp_path):

@@ -1,15 +1,18 @@
 """`amuros lsp`, as an editor uses it: a process that answers in JSON-RPC."""
 
 import json
+import re
 import sys
+from collections import defaultdict
 
 import pytest
+import yaml
 from click.testing import CliRunner
 from command import amuros
+from effort import every
 from language_client import LanguageClient, at
 from support import MODEL, ROOT
 
-from amalthea_uros import analyze_files
 from amalthea_uros.cli.main import cli
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.validate.settings import CheckSettings
@@ -104,13 +107,29 @@ def test_a_hover_shows_the_response_time_and_the_verdict_of_analyze(server, file
     assert [line for line in explained.splitlines() if line] == hover.split("```")[1].splitlines()[1:]
 
 
-def test_a_hover_on_a_chain_shows_its_latency(server, file):
-    server.open(file, SAMPLE)
-    hover = server.hover(file, *position_of(SAMPLE, "factor-to-output"))
-    result = analyze_files(ROOT / "samples" / "bodas-test-advanced.yaml")
-    (requirement,) = [each for each in result.analysis.requirements if each.object == "factor-to-output"]
-    assert f"**{requirement.verdict}**: {requirement.quantity} at most 25 ms" in hover
-    assert "Günzel" in hover
+LATE = START + (
+    "tasks:\n  - {name: A, period: 10 ms, execution_time: 1 ms, writes: [x]}\n"
+    "  - {name: B, period: 20 ms, execution_time: 2 ms, reads: [x]}\n"
+    "chains:\n  - {name: a-to-b, path: [A, x, B], reaction: 5 ms}\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "chain", "shown"),
+    [
+        (SAMPLE, "factor-to-output", "**met**: reaction at most 25 ms"),
+        # A value may wait for nearly a whole period of B.
+        (LATE, "a-to-b", "**missed**: reaction at most 5 ms"),
+    ],
+)
+def test_a_hover_on_a_chain_begins_with_the_answer_of_analyze(server, file, text, chain, shown):
+    server.open(file, text)
+    hover = server.hover(file, *position_of(text, chain))
+    file.write_text(text)
+    answer = amuros("analyze", file).stdout.splitlines()[0]
+    assert hover.startswith(f"```text\n{answer}\n```")
+    assert shown in hover
+    assert "what would shorten it" in hover
 
 
 def test_a_hover_follows_the_text(server, file):
@@ -126,6 +145,63 @@ def test_a_hover_follows_the_text(server, file):
 def test_a_hover_on_a_key_shows_what_it_means(server, file):
     server.open(file, SAMPLE)
     assert server.hover(file, *position_of(SAMPLE, "hardware")) == "**hardware**: The controller."
+
+
+def keys_in(node):
+    """The nodes of all keys; identifiers of messages are given to names, which mean nothing else."""
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            yield key
+            yield from () if key.value == "identifiers" else keys_in(value)
+    elif isinstance(node, yaml.SequenceNode):
+        for item in node.value:
+            yield from keys_in(item)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "samples").glob("*.yaml")), ids=lambda path: path.stem)
+def test_each_key_of_a_sample_has_a_meaning(server, file, path):
+    server.start_open(file, text := path.read_text())
+    for key in every(8, list(keys_in(yaml.compose(text)))):
+        hover = server.hover(file, key.start_mark.line, key.start_mark.column)
+        assert re.match(rf"\*\*{key.value}\*\*: .{{5}}", hover), (key.value, hover)
+
+
+SCHEMA = json.loads((ROOT / "schemas" / "app.schema.json").read_text())
+
+
+def forms(schema):
+    """The alternatives of a value in the schema, without references."""
+    if "$ref" in schema:
+        return forms(SCHEMA["definitions"][schema["$ref"].rpartition("/")[2]])
+    others = [*schema.get("anyOf", ()), *schema.get("allOf", ())]
+    return [schema, *(form for other in others for form in forms(other))]
+
+
+def mappings(schema, text, depth=5):
+    """What is written before the keys of each mapping, and one of its keys, down to a depth."""
+    for form in forms(schema):
+        inside = [(f"{text}{key}: ", value) for key, value in form.get("properties", {}).items()]
+        inside += [(f"{text}a_name: ", value) for value in form.get("patternProperties", {}).values() if text]
+        for written, value in inside:
+            yield text, written.removeprefix(text).removesuffix(": ")
+            for other in forms(value) if depth else ():
+                if "items" in other:
+                    yield from mappings(other["items"], f"{written}[{{", depth - 1)
+                elif "properties" in other or "patternProperties" in other:
+                    yield from mappings(other, f"{written}{{", depth - 1)
+
+
+def test_each_key_of_the_schema_is_completed_with_its_meaning(server, file):
+    expected = defaultdict(set)
+    for text, key in mappings(SCHEMA, ""):
+        expected[text].add(key)
+    assert len(expected) > 300
+    server.start_open(file, "amuros: 1\n")
+    for text in every(8, sorted(expected)):
+        server.change(file, f"amuros: 1\n{text}")
+        items = server.request("textDocument/completion", at(file, 1, len(text)))
+        assert {item["label"] for item in items} == expected[text] - {"amuros", "a_name"}, text
+        assert all(item["documentation"]["value"] for item in items), text
 
 
 def test_a_text_that_is_too_large_to_analyze_says_so(server, file):

@@ -1,5 +1,6 @@
 """Tables fit the terminal, and nothing of them is lost."""
 
+import re
 from io import StringIO
 
 import pytest
@@ -129,6 +130,37 @@ def test_lines_keep_numbers_with_their_units(columns):
     stream = Screen()
     Terminal(stream).line("  it takes at most 12 ms here")
     assert stream.getvalue().splitlines() == ["  it takes at most", "    12 ms here"]
+
+
+def test_names_that_are_longer_than_a_line_continue_between_their_parts(columns):
+    columns(20)
+    stream = Screen()
+    Terminal(stream).line("  of Left_front_wheelSpeedOfTheVehicle now")
+    assert stream.getvalue().splitlines() == ["  of", "    Left_front_wheel", "    SpeedOfThe", "    Vehicle now"]
+
+
+@given(st.text("abC_/. ", max_size=200), st.integers(20, 80), st.booleans())
+def test_no_line_is_wider_than_the_terminal_and_nothing_of_it_is_lost(text, width, has_style):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COLUMNS", str(width))
+        patch.setenv("FORCE_COLOR", "1")
+        patch.delenv("NO_COLOR", raising=False)
+        stream = Screen()
+        terminal = Terminal(stream)
+        terminal.line(f"  {terminal.style(text, '1') if has_style else text} 12 ms")
+    lines = re.sub(r"\x1b\[\d+m", "", stream.getvalue()).splitlines()
+    assert max(map(len, lines)) <= width
+    assert "".join("".join(lines).split()) == "".join(text.split()) + "12ms"
+
+
+def test_several_numbers_of_a_cell_are_in_lines_of_their_own_where_it_does_not_fit(columns):
+    columns(30)
+    assert written(("task", "measured"), [("A_long_name", "1.5 ms / 12.5 ms / 100 ms")], right=(1,)) == [
+        "  task          measured",
+        "  A_long_name   1.5 ms /",
+        "               12.5 ms /",
+        "                  100 ms",
+    ]
 
 
 def test_a_stated_width_is_one_of_pipes_unless_readline_states_it(monkeypatch, columns):

@@ -9,10 +9,11 @@ from functools import partial
 from io import BytesIO
 from typing import Any, TypeAlias
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, fields
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Sweep, count_variants, variants
+from amalthea_uros.design.changes.key import Configuration
 from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
@@ -137,10 +138,29 @@ def compact_bytes(value: object) -> bytes:
     return stream.getvalue()
 
 
-def origin_from(data: bytes) -> ChangeOrigin:
-    """What changes act on, from some bytes."""
-    origin: ChangeOrigin = pickle.loads(data)
-    return origin
+@dataclass(frozen=True, slots=True)
+class VariantJob:
+    """What is done with a system that has the changes of a run; it is sent without the objects and files of the system.
+
+    Attributes
+    ----------
+    changes : of all runs
+    """
+
+    origin: ChangeOrigin
+    changes: tuple[Change, ...]
+
+    def configure(self, run: CampaignRun) -> Configuration:
+        """The system and the settings of a run; InvalidArgumentError if something is wrong with a change."""
+        return self.origin.configure((*self.changes, *run.changes))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        _, *others = (getattr(self, field.name) for field in fields(self))
+        return _received, (type(self), compact_bytes(self.origin), *others)
+
+
+def _received(kind: type[VariantJob], origin: bytes, *others: Any) -> VariantJob:
+    return kind(pickle.loads(origin), *others)
 
 
 class _Pickler(pickle.Pickler):

@@ -7,9 +7,7 @@ from pathlib import Path
 from amalthea_uros._internal.limits import CAMPAIGN_OCCURRENCES
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, replace
-from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantResults, compact_bytes, origin_from
-from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.origin import ChangeOrigin
+from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, VariantJob, VariantResults
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.perf.named import Brief
@@ -94,23 +92,14 @@ def require_bounded_work(system: System, options: Options, runs: int) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class SimulationJob:
-    """Simulates a system with the changes and the seed of a run; the options have the settings of the origin."""
+class SimulationJob(VariantJob):
+    """Simulates the system of a run with its seed; the options have the settings of the origin."""
 
-    origin: ChangeOrigin
     options: Options
-    changes: tuple[Change, ...] = ()
 
     def __call__(self, run: CampaignRun) -> Record:
         """The observations of a run as a row of a table."""
         from amalthea_uros.simulate.runs.run import simulate_system
 
-        changed = self.origin.configure((*self.changes, *run.changes))
+        changed = self.configure(run)
         return simulate_system(changed.system, replace(self.options, settings=changed.settings, seed=run.seed)).record()
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return _received_job, (compact_bytes(self.origin), self.options, self.changes)
-
-
-def _received_job(origin: bytes, options: Options, changes: tuple[Change, ...]) -> SimulationJob:
-    return SimulationJob(origin_from(origin), options, changes)

@@ -11,10 +11,9 @@ from amalthea_uros.analyze.impact import ComparedFigure, FigureUnit, figures
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, Value, VariantResults, compact_bytes, origin_from
+from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, Value, VariantJob, VariantResults
 from amalthea_uros.design.changes.change import (
     SWEEP_FORM,
-    Change,
     Sweep,
     combinations,
     parse_sweep,
@@ -22,7 +21,6 @@ from amalthea_uros.design.changes.change import (
     split_target,
     variants,
 )
-from amalthea_uros.design.changes.origin import ChangeOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.names import require
@@ -149,28 +147,19 @@ class SweepResult(VariantResults):
 
 
 @dataclass(frozen=True, slots=True)
-class AnalysisJob:
-    """Analyses a system with the changes of a run."""
+class AnalysisJob(VariantJob):
+    """Analyses the system of a run."""
 
-    origin: ChangeOrigin
-    changes: tuple[Change, ...] = ()
     with_growth: bool = False
 
     def __call__(self, run: CampaignRun) -> Record:
         """The results as a row of a table."""
-        analysis = analyze_system(*self.origin.configure((*self.changes, *run.changes)))
+        analysis = analyze_system(*self.configure(run))
         found = _record(analysis)
         if self.with_growth:
             growth = max_growth(analysis)
             found[GROWTH] = None if growth is None else float(growth)
         return found
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return _received_job, (compact_bytes(self.origin), self.changes, self.with_growth)
-
-
-def _received_job(origin: bytes, changes: tuple[Change, ...], with_growth: bool) -> AnalysisJob:
-    return AnalysisJob(origin_from(origin), changes, with_growth)
 
 
 def _record(analysis: Analysis) -> dict[str, Value]:

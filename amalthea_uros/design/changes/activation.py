@@ -7,21 +7,20 @@ from dataclasses import replace
 from typing import Any
 
 from amalthea_uros.design.changes.key import (
-    ISRS,
     STIMULI,
-    TASKS,
     UNSET,
-    Collection,
     Configuration,
     Key,
     duration,
     positive_duration,
+    process_place,
+    unused,
 )
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
 from amalthea_uros.perf.distributions import Constant, Distribution, Uniform, highest
 from amalthea_uros.perf.events import StimulusEvent
-from amalthea_uros.perf.software import Process, Task
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.stimuli import Arrivals, Burst, Counter, Periodic, RelativePeriodic, Stimulus, Synthetic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import counters, first_time, known_releases, nominal_period, with_counters
@@ -110,11 +109,12 @@ def _with_process_value(system: System, name: str, field: str, value: Any) -> Sy
     """The system in which the only stimulus of a process has another value; other processes keep theirs."""
     process = system.processes[name]
     found = _stimuli(process, system)
-    place = TASKS if isinstance(process, Task) else ISRS
     if field == "period" and not process.stimuli:
         # Nothing activates it yet. Only the distance of its activations is stated, so nothing is known of the phase.
-        added = RelativePeriodic(name=_unused_name(f"period of {name}", system), distance=Constant(value), has_maximum=True)
-        return place.with_fields(STIMULI.with_item(system, added), name, stimuli=(added.name,))
+        added = RelativePeriodic(
+            name=unused(f"period of {name}", system.stimuli_by_name), distance=Constant(value), has_maximum=True
+        )
+        return process_place(process).with_fields(STIMULI.with_item(system, added), name, stimuli=(added.name,))
     if len(found) != 1:
         names = ", ".join(stimulus.name for stimulus in found)
         reason = f"has several stimuli ({names}); change one of these" if found else f"has no stimulus; state {name}.period"
@@ -127,13 +127,9 @@ def _with_process_value(system: System, name: str, field: str, value: Any) -> Sy
     if any(isinstance(event, StimulusEvent) and event.stimulus == stimulus.name for event in system.events.events):
         message = f"{stimulus.name!r} activates other processes, too, and an event refers to it; change {stimulus.name}.{field}"
         raise InvalidArgumentError(f"the stimulus {message} for all of them")
-    own = replace(stimulus, name=_unused_name(f"{stimulus.name} of {name}", system), **fields)
+    own = replace(stimulus, name=unused(f"{stimulus.name} of {name}", system.stimuli_by_name), **fields)
     renamed = tuple(own.name if each == stimulus.name else each for each in process.stimuli)
-    return _place(process).with_fields(STIMULI.with_item(system, own), name, stimuli=renamed)
-
-
-def _place(process: Process) -> Collection:
-    return TASKS if isinstance(process, Task) else ISRS
+    return process_place(process).with_fields(STIMULI.with_item(system, own), name, stimuli=renamed)
 
 
 def _show_stimulus(configuration: Configuration, name: str) -> str:
@@ -144,13 +140,7 @@ def _set_stimulus(configuration: Configuration, name: str, stimulus: str) -> Con
     """Let a stimulus of the system activate a process, in place of those that do."""
     system = configuration.system
     require("stimulus", [stimulus], system.stimuli_by_name)
-    return configuration._replace(system=_place(system.processes[name]).with_fields(system, name, stimuli=(stimulus,)))
-
-
-def _unused_name(name: str, system: System) -> str:
-    while name in system.stimuli_by_name:
-        name += "'"
-    return name
+    return configuration._replace(system=process_place(system.processes[name]).with_fields(system, name, stimuli=(stimulus,)))
 
 
 #: The keys of stimuli, and of processes.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.key import CLOCKS
+from amalthea_uros.design.changes.key import CLOCKS, unused
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.perf.hardware import Clock, Structure
 from amalthea_uros.perf.system import System
@@ -69,9 +69,7 @@ def _with_core_frequency(system: System, core: str, frequency: Frequency) -> Sys
     clock = system.cores[core].clock
     if clock is not None and clock in system.clocks and _users(clock, system) == 1:
         return CLOCKS.with_fields(system, clock, frequency=frequency)
-    name = f"Clock of {core}"
-    while name in system.clocks:
-        name += "'"
+    name = unused(f"Clock of {core}", system.clocks)
     system = CLOCKS.with_item(system, Clock(name=name, frequency=frequency))
     structures = tuple(_with_clock(structure, core, name) for structure in system.hardware.structures)
     return replace(system, hardware=replace(system.hardware, structures=structures))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from itertools import takewhile
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.design.changes.key import ISRS, RUNNABLES, TASKS, UNSET, Collection, Configuration, Key, duration
+from amalthea_uros.design.changes.key import RUNNABLES, UNSET, Collection, Configuration, Key, duration, process_place
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import listed
 from amalthea_uros.perf.activities import (
@@ -22,7 +22,6 @@ from amalthea_uros.perf.activities import (
     walk,
 )
 from amalthea_uros.perf.distributions import Boundaries, Constant, Distribution, Sampling, highest, lowest
-from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.jobs.executed import executed
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
@@ -143,7 +142,7 @@ def _set_process(configuration: Configuration, name: str, time: ExecutionTime) -
         case [], [runnable] if _callers(runnable, system) == [name]:
             return _with_demand(configuration, RUNNABLES, runnable, distribution)
         case own, [] if own or not called:
-            return _with_demand(configuration, TASKS if isinstance(process, Task) else ISRS, name, distribution)
+            return _with_demand(configuration, process_place(process), name, distribution)
     choices = listed([f"{each}.execution_time" for each in runnables or sorted(called)])
     raise InvalidArgumentError(f"{name!r} has no single execution time of its own; change those of its runnables: {choices}")
 

@@ -8,6 +8,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.perf.software import Process, Task
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Frequency, Time, parse_frequency, parse_time
@@ -104,6 +105,11 @@ OPERATING_SYSTEMS = Collection("os", "systems")
 TASK_ALLOCATIONS = Collection("mapping", "tasks", "task")
 ISR_ALLOCATIONS = Collection("mapping", "isrs", "isr")
 PLACEMENTS = Collection("mapping", "placements", "element")
+
+
+def process_place(process: Process) -> Collection:
+    """Where a process is in a system."""
+    return TASKS if isinstance(process, Task) else ISRS
 
 
 def field_key(place: Collection, field: str, parse: Callable[[str], V], text: Callable[[V], str] = str) -> Key[V]:

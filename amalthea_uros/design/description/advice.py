@@ -16,6 +16,8 @@ _BAUD_RATE = 921_600
 _BITRATE = "1 Mbit/s"
 #: The shortest sleep and timeout that are tried: the tick that most ports have.
 _SHORTEST = "1 ms"
+#: Where values are tried.
+_SECTIONS = {"loop", "serial", "can", "driver", "subscriptions", "publishers", "timers", "os", "tasks", "executor", "executors"}
 #: Bytes: of smaller messages, the headers are most of what is sent.
 _SMALL_MESSAGE = 16
 
@@ -57,20 +59,7 @@ def suggestions(keys: Sequence[DescriptionKey], cores: Sequence[str] = ()) -> It
 
 def _is_meant(key: DescriptionKey) -> bool:
     """Whether a key is about an executor, a wire, a task or a message, and not about something else of the same name."""
-    sections = {
-        "loop",
-        "serial",
-        "can",
-        "driver",
-        "subscriptions",
-        "publishers",
-        "timers",
-        "os",
-        "tasks",
-        "executor",
-        "executors",
-    }
-    return not sections.isdisjoint(map(str, key.path)) or key.path[-1] == "semantics"
+    return not _SECTIONS.isdisjoint(map(str, key.path))
 
 
 def _is_tried_elsewhere(key: DescriptionKey) -> bool:
@@ -128,11 +117,6 @@ def _unacknowledged(present: Written | None) -> Iterator[str]:
         yield "best-effort"
 
 
-def _at_once(present: Written | None) -> Iterator[str]:
-    if present == "ROS":
-        yield "LET"
-
-
 #: The last name of a key -> the values to try instead of the present one.
 _VALUES: Mapping[str, Callable[[Written | None], Iterator[str]]] = {
     "sleep": _shorter,
@@ -145,6 +129,5 @@ _VALUES: Mapping[str, Callable[[Written | None], Iterator[str]]] = {
     "baud_rate": _faster_line,
     "bitrate": _faster_bus,
     "reliability": _unacknowledged,
-    "semantics": _at_once,
     "period": _half,
 }

@@ -10,7 +10,7 @@ from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.change import Change, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
-from amalthea_uros.design.changes.timing_changes import Happening, timing_changes
+from amalthea_uros.design.changes.timing_changes import consequences
 from amalthea_uros.design.description.assign import Assignment, Assignments, apply_assignments, is_stated_by_parts, the_key
 from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.design.description.keys import DescriptionKey, keys_of, matching, short_name
@@ -111,7 +111,10 @@ class DescriptionOrigin:
         values |= {
             f"{each.object}.{each.key}": each for each in describe(new, self.settings, divided.assumed) if divided.assumed
         }
-        return (*values.values(), *_consequences(old, new, values))
+        wires = {message.name for message in (*old.network.transmissions, *new.network.transmissions)}
+        following = consequences(Configuration(old, Settings()), Configuration(new, Settings()), tuple(values.values()))
+        tasks = (each for each in following if each.object in new.processes and each.object not in wires)
+        return (*values.values(), *(each for each in tasks if each.key in _FOLLOWING))
 
     def divided(self, changes: Sequence[Change]) -> DividedChanges:
         """The changes by what they act on.
@@ -175,18 +178,6 @@ class DescriptionOrigin:
         if before is None and key is not None and key.value is not None:
             before = rendered(key.value)
         return Difference(change.object, change.key, before or UNSET, value_text(text, path) or UNSET)
-
-
-def _consequences(old: System, new: System, shown: dict[str, Difference]) -> list[Difference]:
-    """Values of tasks of the controller follows from changes."""
-    wires = {message.name for message in (*old.network.transmissions, *new.network.transmissions)}
-    return [
-        Difference(each.object, each.key, each.before, each.after, is_consequence=True)
-        for change in timing_changes(old, new)
-        if change.kind in ("task", "ISR") and change.happening is Happening.CHANGED and change.object not in wires
-        for each in change.differences
-        if each.key in _FOLLOWING and f"{each.object}.{each.key}" not in shown
-    ]
 
 
 @lru_cache(maxsize=4)

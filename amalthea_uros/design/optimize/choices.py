@@ -13,8 +13,8 @@ from amalthea_uros.design.changes.change import Change, Sweep, compact
 from amalthea_uros.design.changes.key import UNSET, Configuration
 from amalthea_uros.design.optimize.designs import Designs, RebuiltStructure
 from amalthea_uros.design.optimize.rules import CapacityRule, rules
-from amalthea_uros.design.optimize.space import Choice, DecisionKind, PriorityOrder, Space
-from amalthea_uros.design.optimize.stated_values import Source, attribute_structures, is_stated, model_of, offered_values
+from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, PriorityOrder, Space
+from amalthea_uros.design.optimize.stated_values import Source, is_stated, offered_values, structures
 from amalthea_uros.design.optimize.structures import DescribedCallbacks
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
@@ -92,9 +92,10 @@ def design_space(
     """
     stated_offers = () if source is None else tuple(each for each in wishes.offers if is_stated(each, source, assembly))
     builder = _Builder(assembly, present, wishes, stated_offers)
-    model = model_of(source)
     described = (
-        DescribedCallbacks.of(source) if (stated_offers and model is None) or _needs_description(assembly, wishes) else None
+        DescribedCallbacks.of(source)
+        if (stated_offers and assembly is not None) or _needs_description(assembly, wishes)
+        else None
     )
     _check_keep(wishes.keep, present.system, described)
     offered = () if source is None else tuple(offered_values(source, stated_offers))
@@ -113,12 +114,18 @@ def design_space(
             rate_monotonic=tuple(other.orders()) if follows else (),
         )
 
+    def build(own: Candidate) -> RebuiltStructure:
+        if described is not None:
+            return described.built(own, completed)
+        assert source is not None, "nothing else states values"
+        return completed(own, source.configure(own).system, None)
+
     designs = Designs(
         present=present,
         rules=tuple(rules(assembly, present.system)),
         rate_monotonic=orders if follows else (),
         stated={choice.target: choice.options[0] for choice in stated},
-        structures=described.structures(stated, completed) if described else attribute_structures(model, stated, completed),
+        structures=structures(stated, build),
     )
     return space, designs
 

@@ -34,8 +34,15 @@ def offered_values(origin: ChangeOrigin, offers: Iterable[Sweep]) -> Iterator[Ch
         yield Choice(object=offer.object, key=offer.key, kind=DecisionKind.OTHER, options=tuple(options))
 
 
-def check_count(choices: Sequence[Choice]) -> None:
-    """Refuse more combinations than can be built before the search begins; raises InvalidArgumentError."""
+def structures(
+    choices: Sequence[Choice], build: Callable[[Candidate], RebuiltStructure]
+) -> Mapping[Candidate, RebuiltStructure | str]:
+    """What is built for each combination of options apart from the present one, or why it is impossible.
+
+    Raises
+    ------
+    InvalidArgumentError : there are more than can be built before the search begins.
+    """
     count = prod(len(choice.options) for choice in choices)
     if count > MOST_STRUCTURES:
         names = ", ".join(choice.target for choice in choices)
@@ -43,22 +50,12 @@ def check_count(choices: Sequence[Choice]) -> None:
             f"{names} have {count:,} combinations; at most {MOST_STRUCTURES:,} are possible, leave some out with --keep"
         )
 
-
-def attribute_structures(
-    origin: ModelOrigin | None, choices: Sequence[Choice], complete: Completed
-) -> Mapping[Candidate, RebuiltStructure | str]:
-    """The system of each combination of attributes of a model, apart from the present one; raises as `check_count`."""
-    if origin is None:
-        return {}
-    model = origin
-
     def built(own: Candidate) -> RebuiltStructure | str:
         try:
-            return complete(own, model.configure(own).system, None)
+            return build(own)
         except InvalidArgumentError as error:
             return str(error)
 
-    check_count(choices)
     return {own: built(own) for own in combinations_of(choices) if own}
 
 
@@ -82,8 +79,3 @@ def is_stated(offer: Sweep, source: Source, assembly: Assembly | None) -> bool:
     except InvalidArgumentError:
         return True
     return False
-
-
-def model_of(source: Source | None) -> ModelOrigin | None:
-    """The model that changes act on; None for other systems."""
-    return source if isinstance(source, ModelOrigin) else None

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import permutations
 
 from amalthea_uros._internal.records import dataclass, fields
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.optimize.designs import RebuiltStructure
-from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind, combinations_of
-from amalthea_uros.design.optimize.stated_values import Completed, Source, check_count
+from amalthea_uros.design.optimize.space import Candidate, Choice, DecisionKind
+from amalthea_uros.design.optimize.stated_values import Completed, Source
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.executors import ExecutorSection
@@ -76,31 +76,17 @@ class DescribedCallbacks:
             options = tuple(dict.fromkeys((self.executor.semantics, "ROS", "LET")))
             yield Choice(object=self.executor.name, key="semantics", kind=DecisionKind.COMMUNICATION, options=options)
 
-    def structures(self, choices: Sequence[Choice], complete: Completed) -> Mapping[Candidate, RebuiltStructure | str]:
-        """What is built for each combination of options, apart from the present one.
-
-        Raises
-        ------
-        InvalidArgumentError : there are too many.
-        """
-        check_count(choices)
-        return {own: self._built(own, complete) for own in combinations_of(choices) if own}
-
-    def _built(self, own: Candidate, complete: Completed) -> RebuiltStructure | str:
-        """A structure, or why it is impossible."""
+    def built(self, own: Candidate, complete: Completed) -> RebuiltStructure:
+        """What is built with some options; InvalidArgumentError if it is impossible."""
         inside = {callback.name: callback.in_executor for callback in self.callbacks}
         moved = {change.object: change.value == "executor" for change in own if change.key == "runs_in"}
         for callback in self.callbacks:
             if moved.get(callback.name) and getattr(callback.section, "deadline", None) is not None:
-                return f"the deadline of {callback.name!r} has no effect in the executor"
+                raise InvalidArgumentError(f"the deadline of {callback.name!r} has no effect in the executor")
         changes = self._with_order(own, {**inside, **moved})
-        try:
-            text = self.origin.edited(changes)
-        except InvalidArgumentError as error:
-            return str(error)
-        rebuilt = describe_text(text, self.origin.path).assembly
+        rebuilt = describe_text(self.origin.edited(changes), self.origin.path).assembly
         if _demands(rebuilt.system) != _demands(self.whole.assembly.system):
-            return "a requirement of the model has no object there"
+            raise InvalidArgumentError("a requirement of the model has no object there")
         return complete(changes, rebuilt.system, rebuilt)
 
     def _with_order(self, own: Candidate, inside: Mapping[str, bool]) -> tuple[Change, ...]:

@@ -381,15 +381,19 @@ def _limit_cells(limit: MeasuredLimit) -> tuple[str, ...]:
     )
 
 
+#: What the times of a row are.
+_SERIES = ("object", "quantity")
+
+
 def comparison_document(result: Comparison) -> ResultDocument:
     """Tables of predictions, bounds, distributions and limits, what was not compared, and whether the model holds."""
     predictions = "Predictions (min / mean / max; deviation: of the measurement, positive if more was measured than predicted)"
-    predicted = ("object", "quantity", ">values", ">measured", ">predicted", "claim", ">deviation", ">distance", "verdict", "")
+    predicted = (*_SERIES, "~~>values", ">measured", ">predicted", "~claim", ">deviation", "~~~>distance", "verdict", "")
     bounds = "Bounds of the analysis (nothing may be measured beyond them, without tolerance)"
-    bounded = ("object", "quantity", ">lower bound", ">min", ">max", ">upper bound", ">margin", "claim", "verdict", "")
+    bounded = (*_SERIES, "~~>lower bound", "~~~>min", ">max", ">upper bound", "~>margin", "~~~~claim", "verdict", "")
     distance = "Distributions (Kolmogorov-Smirnov distance from the simulated values, and its critical value at 5 %)"
-    distributed = ("object", "quantity", ">distance", ">critical", ">p50", ">simulated p50", ">p99", ">simulated p99", "")
-    lost = ("object", "quantity", ">values", ">lost", ">share", ">simulated")
+    distributed = (*_SERIES, ">distance", "~>critical", "~~~>p50", "~~>simulated p50", ">p99", ">simulated p99", "")
+    lost = (*_SERIES, ">values", ">lost", ">share", ">simulated")
     limited = ("requirement", "what", "limit", ">measured", ">values", "verdict", "")
     missing = [(row.object, words(row.quantity), str(row.verdict), row.reason) for row in _missing_rows(result)]
     not_shown, not_predicted = (Sentences([text] if text else []) for text in (_hidden(result), _hidden_missing(result)))
@@ -402,7 +406,7 @@ def comparison_document(result: Comparison) -> ResultDocument:
             table("", lost, map(_loss_cells, result.losses)),
         ),
         section("Limits, as measured", table("", limited, map(_limit_cells, result.limits))),
-        section("Not compared", table("", ("object", "quantity", "", "reason"), missing), not_predicted),
+        section("Not compared", table("", (*_SERIES, "", "reason"), missing), not_predicted),
         section("Assumptions", Sentences(result.assumptions)),
     )
     return document(sections, closing_line(result), "Comparison with a measurement", _subject_line(result))

@@ -20,8 +20,8 @@ from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: The numbers that are shown of each series.
-_FIGURES = ("n", "min", "mean", "max", "std", "peak to peak", "p99", "variance")
-COLUMNS = ("object", "quantity", *(f">{figure}" for figure in _FIGURES))
+_FIGURES = ("~>n", ">min", ">mean", ">max", "~~>std", "~~~~>peak to peak", "~~~>p99", "~~~~~>variance")
+COLUMNS = ("object", "quantity", *_FIGURES)
 _NET = ("object", "quantity", ">empty (min / mean / max)", ">at least", ">at most")
 _PERIODS = ("object", "quantity", ">period", ">largest deviation")
 _COUNTS = ("object", ">incomplete", ">lost", ">duplicated", ">reordered")

@@ -10,6 +10,9 @@ from textwrap import wrap
 #: Columns between two cells, and before the first.
 GAP = 2
 
+#: Between several numbers of a cell, which may then be in several lines.
+SEVERAL = " / "
+
 #: What the columns of remarks are called.
 _REMARKS = ("", "reason", "why", "how it is computed", "what gets worse")
 
@@ -117,15 +120,15 @@ def folded(headings: Sequence[str], cells: Sequence[Sequence[str]], fixed: Colle
     return [[_folded_cell(cell, limit) for cell, limit in zip(row, widths, strict=True)] for row in cells]
 
 
-#: Where a name can continue on the next line: after a sign between its parts.
-_PARTS = re.compile(r"(?<=[_/:.-])(?=\w)")
+#: Where a name can continue on the next line: after a sign between its parts, and before a capital letter.
+_PARTS = re.compile(r"(?<=[_/:.-])(?=\w)|(?<=[a-z\d])(?=[A-Z])")
 
 
 def _folded_cell(cell: str, width: int) -> str:
     if len(cell) <= width:
         return cell
     parts = wrap(glued(cell), width, break_long_words=False)
-    return unglued("\n".join(line for part in parts for line in _broken(part, width)))
+    return unglued("\n".join(line for part in parts for line in broken(part, width)))
 
 
 #: Between a number and its unit: no line ends there.
@@ -143,7 +146,7 @@ def unglued(text: str) -> str:
     return text.replace(_GLUE, " ")
 
 
-def _broken(line: str, width: int) -> Iterator[str]:
+def broken(line: str, width: int) -> Iterator[str]:
     """A name without spaces in lines, if possible between its parts."""
     begun = ""
     for part in _PARTS.split(line):

@@ -15,7 +15,9 @@ from amalthea_uros.report.basics.display import is_coloured, is_standard
 from amalthea_uros.report.basics.escape import output_line, visible
 from amalthea_uros.report.writers.table_layout import (
     GAP,
+    SEVERAL,
     Footnotes,
+    broken,
     column_widths,
     folded,
     folded_headings,
@@ -162,12 +164,13 @@ class Terminal:
         cells = with_footnotes(headings, cells, self.width or WIDTH_ELSEWHERE, self.notes)
         if self.width is not None:
             titles, headings = headings, folded_headings(headings, cells, self.width)
-            without = left_out(headings, cells, spare, right, self.width)
+            whole = [index for index in right if not any(SEVERAL in row[index] for row in cells)]
+            without = left_out(headings, cells, spare, whole, self.width)
             kept = [index for index in range(len(headings)) if index not in without]
             missing = [titles[index] for index in sorted(without) if titles[index]]
             headings = [headings[index] for index in kept]
-            right = [number for number, index in enumerate(kept) if index in right]
-            cells = folded(headings, [[row[index] for index in kept] for row in cells], right, self.width)
+            right, whole = ([number for number, index in enumerate(kept) if index in some] for some in (right, whole))
+            cells = folded(headings, [[row[index] for index in kept] for row in cells], whole, self.width)
         widths = column_widths(headings, cells)
         for is_heading, row in [(True, list(headings)), *((False, row) for row in cells)]:
             for line in zip_longest(*(cell.split("\n") for cell in row), fillvalue=""):
@@ -205,19 +208,40 @@ def _is_for_pipes(stream: IO[str]) -> bool:
 
 
 def wrapped(text: str, width: int) -> list[str]:
-    """A text in lines; those after the first are indented more, names stay whole, and a style ends and begins again with each line."""
-    if len(_STYLES.sub("", text)) <= width:
+    """A text in lines; those after the first are indented more, and a style ends and begins again with each line.
+
+    Names stay whole unless they are longer than a line.
+    """
+    if _shown_length(text) <= width:
         return [text]
     indent = len(text) - len(text.lstrip())
     found, length = [" " * indent], indent - 1
     for word in map(unglued, glued(text).split()):
-        size = len(_STYLES.sub("", word))
-        if length + 1 + size > width and found[-1].strip():
-            found.append(" " * (indent + GAP))
-            length = indent + GAP - 1
-        found[-1] += f" {word}" if found[-1].strip() else word
-        length += 1 + size
+        for number, part in enumerate(_parts(word, width - indent - GAP)):
+            blank = " " if number == 0 and found[-1].strip() else ""
+            size = _shown_length(part)
+            if size and length + 1 + size > width and found[-1].strip():
+                found.append(" " * (indent + GAP))
+                length, blank = indent + GAP - 1, ""
+            found[-1] += blank + part
+            length += size + (number == 0)
     return list(_each_styled(found))
+
+
+def _shown_length(text: str) -> int:
+    """The length without styles."""
+    return len(_STYLES.sub("", text))
+
+
+def _parts(word: str, room: int) -> Iterator[str]:
+    """A word, or the styles and parts of one that is too long."""
+    if _shown_length(word) <= room:
+        yield word
+        return
+    plain = _STYLES.split(word)
+    for text, style in zip_longest(plain, _STYLES.findall(word), fillvalue=""):
+        yield from broken(text, room)
+        yield style
 
 
 def _each_styled(lines: Iterable[str]) -> Iterator[str]:
