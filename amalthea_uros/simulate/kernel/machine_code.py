@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from functools import cache
-from hashlib import blake2b
-from inspect import getsource
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
@@ -68,15 +66,12 @@ _MODULES = (
 #: Seconds after which the speed of a run is known, and about how long numba takes to compile the kernel.
 _KNOWN, _COMPILING = 0.2, 25.0
 
-#: With what the name of the compiled function begins.
-_PREFIX = "kernel_"
-
 
 @cache
 def effort() -> CompilationEffort:
     """What the kernel has taken as Python in this process: the runs of a campaign count together."""
     sources = [Path(str(module.__file__)) for module in (loop, *_MODULES, layout, sys.modules[__name__])]
-    return CompilationEffort("the simulation", sources, f"{_PREFIX}*", _COMPILING)
+    return CompilationEffort("the simulation", sources, "run_kernel_*", _COMPILING)
 
 
 def is_worth_it(seconds: float, seconds_left: float) -> bool:
@@ -101,9 +96,7 @@ def compiled() -> CompiledKernel:
     for namespace in namespaces.values():
         namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
     kernel = FunctionType(loop.run_kernel.__code__, namespaces[loop], "run_kernel")
-    # numba looks at the file of this function only, to see whether its machine code is out of date.
-    kernel.__qualname__ = _name()
-    return machine_code(kernel, "int64(int64[::1])")
+    return machine_code(kernel, "int64(int64[::1])", effort().sources)
 
 
 def _functions(module: ModuleType) -> list[FunctionType]:
@@ -114,10 +107,3 @@ def _functions(module: ModuleType) -> list[FunctionType]:
 
 def _is_in(value: object, machine: dict[FunctionType, Any]) -> bool:
     return isinstance(value, FunctionType) and value in machine
-
-
-@cache
-def _name() -> str:
-    """A name that changes with every change of the kernel."""
-    sources = "".join(getsource(module) for module in (*_MODULES, layout, sys.modules[__name__]))
-    return f"{_PREFIX}{blake2b(sources.encode(), digest_size=8).hexdigest()}"
