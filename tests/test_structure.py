@@ -18,7 +18,7 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 1070,
+    "_internal": 1075,
     "_version": 1,
     "am": 2,
     "analyze": 8962,
@@ -42,7 +42,7 @@ LINES = {
     "platforms": 0,
     "report": 8651,
     "services": 2614,
-    "simulate": 8605,
+    "simulate": 8600,
     "source": 3550,
     "spec": 2965,
     "timing": 5671,
