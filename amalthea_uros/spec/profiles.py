@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from amalthea_uros.spec.fields import entry
 from amalthea_uros.spec.section import DescriptionSection
-from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, Priority, Size, SizeOrNothing
+from amalthea_uros.spec.values import WHOLE_NUMBER, Count, CountOrNone, Duration, Name, Offset, PayloadOrNothing, Priority, Size
 
 
 class WaitingData(DescriptionSection):
@@ -83,7 +83,7 @@ class ProfileData(DescriptionSection):
     """How messages are sent."""
     threads: list[ThreadData] = entry(default_factory=list)
     """Its threads."""
-    sizes: dict[Name, SizeOrNothing] = entry(default_factory=dict)
+    sizes: dict[Name, PayloadOrNothing] = entry(default_factory=dict)
     """Sizes of headers and other parts of its messages."""
     options: dict[Name, CountOrNone] = entry(default_factory=dict)
     """Default values of build options where they differ from those of the packages, as the build takes them: lengths in bytes, times
