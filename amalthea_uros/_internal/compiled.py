@@ -78,7 +78,7 @@ class Compiled(Generic[P, R]):
         return self._function(*args, **kwargs)
 
 
-def machine_code(function: Callable[P, R], signature: str | tuple[Type, ...], sources: Sequence[Path]) -> Callable[P, R]:
+def machine_code(function: Callable[P, R], signature: tuple[Type, ...], sources: Sequence[Path]) -> Callable[P, R]:
     """A function as machine code, which numba keeps for the next time where it can.
 
     Where it cannot, as on a full disk, the machine code is used all the same. What it has kept may be damaged, as after a loss of
@@ -93,7 +93,6 @@ def machine_code(function: Callable[P, R], signature: str | tuple[Type, ...], so
     from hashlib import blake2b
 
     from numba import njit
-    from numba.core.sigutils import normalize_signature
 
     # numba names the new code in its index before the file with it appears, which may be that of the former code until then, or for
     # good (numba.core.caching, IndexDataCacheFile.save). So code of other sources has files of other names.
@@ -107,9 +106,9 @@ def machine_code(function: Callable[P, R], signature: str | tuple[Type, ...], so
         Exception
     ):  # damaged files end in any exception; a function that cannot be compiled fails in its first call again
         machine.compile(signature)
-    if normalize_signature(signature)[0] in machine.overloads:
+    if signature in machine.signatures:
         return cast("Callable[P, R]", machine)
-    for index in Path(machine.stats.cache_path).glob(f"*.{function.__qualname__}-*.nbi"):
+    for index in Path(str(machine.stats.cache_path)).glob(f"*.{function.__qualname__}-*.nbi"):
         with suppress(OSError):
             index.unlink()
     return cast("Callable[P, R]", njit(nogil=True)(function))

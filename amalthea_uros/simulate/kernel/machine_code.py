@@ -84,7 +84,7 @@ def is_worth_it(seconds: float, seconds_left: float) -> bool:
 @cache
 def compiled() -> CompiledKernel:
     """The kernel as machine code, which numba keeps for the next time; its memory must be an array of int64."""
-    from numba import njit
+    from numba import int64, njit
 
     namespaces = {module: dict(vars(module)) for module in _MODULES}
     machine = {
@@ -96,7 +96,7 @@ def compiled() -> CompiledKernel:
     for namespace in namespaces.values():
         namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
     kernel = FunctionType(loop.run_kernel.__code__, namespaces[loop], "run_kernel")
-    return machine_code(kernel, "int64(int64[::1])", effort().sources)
+    return machine_code(kernel, (int64[::1],), effort().sources)
 
 
 def _functions(module: ModuleType) -> list[FunctionType]:
