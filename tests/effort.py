@@ -22,8 +22,8 @@ IS_THOROUGH = PROFILE == "thorough"
 
 
 def examples(count: int) -> settings:
-    """Another number of examples than usual for a property, of 16; a usual run tries half of them, a thorough one many more."""
-    return settings(max_examples=count * THOROUGH // 16 if IS_THOROUGH else max(1, count // 2))
+    """Another number of examples than usual for a property, of 16; a usual run tries a quarter of them, a thorough one many more."""
+    return settings(max_examples=count * THOROUGH // 16 if IS_THOROUGH else max(1, count // 4))
 
 
 def every(step: int, cases: Sequence[T]) -> Sequence[T]:

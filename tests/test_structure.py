@@ -18,7 +18,7 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 1071,
+    "_internal": 1076,
     "_version": 1,
     "am": 2,
     "analyze": 9069,
@@ -49,7 +49,7 @@ LINES = {
     "trace": 5073,
     "units": 206,
     "uros": 7801,
-    "validate": 3667,
+    "validate": 3674,
     "xmi": 8579,
 }
 

@@ -5,7 +5,7 @@ A function runs as Python until that has taken about as long as machine code of 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import update_wrapper
 from math import inf
@@ -38,7 +38,7 @@ class Compiled(Generic[P, R]):
         self._python = self._function = function
         self._cost = cost
         name = function.__name__
-        self.effort = CompilationEffort(name, [Path(function.__code__.co_filename)], name, COMPILING)
+        self.effort = CompilationEffort(name, [Path(function.__code__.co_filename)], f"{name}_*", COMPILING)
         #: Seconds as Python after which machine code is considered.
         self._limit = LOADING
         self.is_compiled = False
@@ -74,35 +74,44 @@ class Compiled(Generic[P, R]):
         """The first call of the machine code, which shows the types of the parameters."""
         from numba import typeof
 
-        self._function = machine_code(self._python, tuple(map(typeof, args)))
+        self._function = machine_code(self._python, tuple(map(typeof, args)), self.effort.sources)
         return self._function(*args, **kwargs)
 
 
-def machine_code(function: Callable[P, R], signature: str | tuple[Type, ...]) -> Callable[P, R]:
+def machine_code(function: Callable[P, R], signature: tuple[Type, ...], sources: Sequence[Path]) -> Callable[P, R]:
     """A function as machine code, which numba keeps for the next time where it can.
 
     Where it cannot, as on a full disk, the machine code is used all the same. What it has kept may be damaged, as after a loss of
-    power; that is removed, so that it is kept again the next time.
+    power, or of other types, where two processes kept something at the same time; that is removed, so that it is kept again the next
+    time.
 
     Parameters
     ----------
     signature : the types of the parameters, as numba has them
+    sources : the files with its code; a change of one of them is another function
     """
+    from hashlib import blake2b
+
     from numba import njit
 
+    # numba names the new code in its index before the file with it appears, which may be that of the former code until then, or for
+    # good (numba.core.caching, IndexDataCacheFile.save). So code of other sources has files of other names.
+    digest = blake2b(b"".join(source.read_bytes() for source in sources), digest_size=8).hexdigest()
+    function.__qualname__ = f"{function.__name__}_{digest}"
     try:
         machine = njit(cache=True, nogil=True)(function)
     except RuntimeError:  # there is no folder in which numba could keep it
         return cast("Callable[P, R]", njit(nogil=True)(function))
-    try:
+    with suppress(
+        Exception
+    ):  # damaged files end in any exception; a function that cannot be compiled fails in its first call again
         machine.compile(signature)
-    except Exception:  # damaged files end in any exception; a function that cannot be compiled fails in its first call again
-        if not machine.signatures and machine.stats.cache_path:
-            for index in Path(machine.stats.cache_path).glob(f"*.{function.__qualname__}-*.nbi"):
-                with suppress(OSError):
-                    index.unlink()
-            return cast("Callable[P, R]", njit(nogil=True)(function))
-    return cast("Callable[P, R]", machine)
+    if signature in machine.signatures:
+        return cast("Callable[P, R]", machine)
+    for index in Path(str(machine.stats.cache_path)).glob(f"*.{function.__qualname__}-*.nbi"):
+        with suppress(OSError):
+            index.unlink()
+    return cast("Callable[P, R]", njit(nogil=True)(function))
 
 
 def compiled(cost: int) -> Callable[[Callable[P, R]], Compiled[P, R]]:

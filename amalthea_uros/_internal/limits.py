@@ -28,7 +28,9 @@ MODEL_SIZE = _FACTOR * 256 * 2**20
 #: Elements of a model take up to 900 bytes each, however short they are written.
 MODEL_ELEMENTS = _FACTOR * 1_000_000
 #: Ids in attributes with several.
-MODEL_REFERENCES = _FACTOR * 4_000_000
+MODEL_REFERENCES = _FACTOR * 1_000_000
+#: Findings of a rule in a model; each takes about 1.5 kB.
+RULE_FINDINGS = _FACTOR * 100_000
 #: In bytes.
 DESCRIPTION_SIZE = _FACTOR * 5 * 2**20
 #: Values of a description, those of expanded aliases included.

@@ -10,9 +10,9 @@ from amalthea_uros.spec.values import (
     Duration,
     Name,
     Offset,
+    PayloadOrNothing,
     Priority,
     Size,
-    SizeOrNothing,
     VersionedSection,
 )
 
@@ -89,7 +89,7 @@ class ProfileData(VersionedSection):
     """How messages are sent."""
     threads: list[ThreadData] = entry(default_factory=list)
     """Its threads."""
-    sizes: dict[Name, SizeOrNothing] = entry(default_factory=dict)
+    sizes: dict[Name, PayloadOrNothing] = entry(default_factory=dict)
     """Sizes of headers and other parts of its messages."""
     options: dict[Name, CountOrNone] = entry(default_factory=dict)
     """Default values of build options where they differ from those of the packages, as the build takes them: lengths in bytes, times

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from itertools import islice
 
 from amalthea_uros._internal.failures import failure
+from amalthea_uros._internal.limits import ADVICE, RULE_FINDINGS
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Severity, ToolEffect
 from amalthea_uros.findings.kind import FindingKind
@@ -25,7 +27,15 @@ _REPORT = "Report it to the author of the rule, with the model if possible."
 def run(model: Model, rules: Iterable[ModelCheck]) -> list[Finding]:
     """The findings of rules; a rule that crashes is reported as a finding."""
     context = Context(model)
-    return [finding for rule in rules for finding in _findings(rule, context)]
+    return [finding for rule in rules for finding in _limited(rule, _findings(rule, context))]
+
+
+def _limited(rule: ModelCheck, findings: Iterator[Finding]) -> Iterator[Finding]:
+    """So many findings of a rule as fit into memory, and a finding if there are more, which nobody accepts or suppresses with them."""
+    yield from islice(findings, RULE_FINDINGS)
+    if next(findings, None) is not None:
+        message = f"the rule {rule.id} has more than {RULE_FINDINGS:,} findings; it is not checked further"
+        yield Finding("CHK002", _kind_of(rule).severity, message, help=f"Correct those that are shown. {ADVICE}")
 
 
 def run_system(system: System, rules: Iterable[SystemCheck]) -> list[Finding]:
@@ -54,7 +64,7 @@ def _findings(rule: ModelCheck, context: Context) -> Iterator[Finding]:
         return
     for element in elements:
         try:
-            messages = list(rule.check(element, context))
+            messages = list(islice(rule.check(element, context), RULE_FINDINGS + 1))
         except Exception as error:
             failed = f"the rule {rule.id} failed at this object: {failure(error)}"
             yield _finding("CHK001", Severity.ERROR, failed, element, _REPORT)

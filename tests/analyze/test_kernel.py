@@ -1,19 +1,18 @@
-"""The hot loops as machine code give what they give as Python, whatever becomes of the files in which it is kept."""
+"""The hot loops as machine code give what they give as Python."""
 
 import dataclasses
-import os
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from amalthea_uros._internal.compiled import Compiled, compiled, machine_code
+from amalthea_uros._internal.compiled import Compiled, compiled
 from amalthea_uros.analyze.response_times import kernel, schedule
 from amalthea_uros.analyze.response_times.schedule import PeriodicTask
 from amalthea_uros.timing.demand.multiframe import DemandFrame, MultiframeDemand
 
 np = pytest.importorskip("numpy")
-numba = pytest.importorskip("numba")
+pytest.importorskip("numba")
 
 ROWS = st.lists(
     st.tuples(st.integers(1, 10**12), st.integers(0, 10**11), st.sampled_from([0, 0, 10**9]), st.integers(0, 10**9)), max_size=6
@@ -108,33 +107,3 @@ def test_without_numba_everything_stays_python(monkeypatch):
 
     double.compile()
     assert (double(2), double.is_compiled) == (4, False)
-
-
-def half(number):
-    return number // 2
-
-
-def kept_half():
-    """The function as machine code, and whether that was kept by an earlier one."""
-    found = machine_code(half, (numba.int64,))
-    assert found(9) == 4
-    return found.stats.cache_hits[numba.int64,] == 1
-
-
-@pytest.mark.parametrize("suffix", [".nbi", ".nbc"])
-@pytest.mark.parametrize("size", [0, 100])
-def test_damaged_machine_code_is_made_again(suffix, size, tmp_path, monkeypatch):
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-    assert [kept_half(), kept_half()] == [False, True]
-    (damaged,) = tmp_path.glob(f"*/*{suffix}")
-    os.truncate(damaged, size)
-    assert [kept_half(), kept_half(), kept_half()] == [False, False, True]
-
-
-def test_machine_code_that_cannot_be_kept_is_used(tmp_path, monkeypatch):
-    def full(*_arguments):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(os, "replace", full)
-    assert not kept_half()

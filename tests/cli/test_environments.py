@@ -13,8 +13,7 @@ COMMAND = [sys.executable, "-m", "amalthea_uros"]
 PATHS = {"PYTHONPATH": str(ROOT), "PATH": os.environ["PATH"]}
 #: How processes are started elsewhere: by containers without a home, in other languages, by users who strip docstrings.
 ENVIRONMENTS = {
-    "optimized": {"PYTHONOPTIMIZE": "2"},
-    "C locale": {"LC_ALL": "C", "HOME": "/nonexistent"},
+    "optimized, C locale, no home": {"PYTHONOPTIMIZE": "2", "LC_ALL": "C", "HOME": "/nonexistent"},
     "hash seed": {"PYTHONHASHSEED": "4711", "LANG": "tr_TR.UTF-8"},
 }
 

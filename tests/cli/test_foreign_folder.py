@@ -4,29 +4,17 @@ import os
 import signal
 import subprocess
 import sys
+from pkgutil import iter_modules
 from shutil import copy
 
 import pytest
+from click import Context
 from support import ROOT
 
 from amalthea_uros._internal import machine_code, own_processes
-from amalthea_uros.cli.main import COMMANDS
+from amalthea_uros.cli.main import COMMANDS, cli
 
 SAMPLES = ROOT / "samples"
-LIBRARIES = (
-    "_numba",
-    "click",
-    "dask",
-    "jinja2",
-    "lxml",
-    "networkx",
-    "numba",
-    "numpy",
-    "pydantic",
-    "pygls",
-    "tree_sitter",
-    "yaml",
-)
 INPUTS = {
     "a.amxmi": "executor.amxmi",
     "app.yaml": "bodas-test-measured.yaml",
@@ -69,7 +57,10 @@ def folder(tmp_path_factory):
     """Inputs among modules of all names that are imported somewhere; importing one leaves a trace."""
     path = tmp_path_factory.mktemp("cloned")
     poison = f"open({str(path / 'executed')!r}, 'a').write(__name__ + ' ')\nraise SystemExit('foreign code runs')\n"
-    for name in {*sys.stdlib_module_names, *LIBRARIES, "sitecustomize", "usercustomize", "conftest"}:
+    installed = {module.name for module in iter_modules()}
+    # Libraries that are used where they are installed: some of them are not installed here.
+    optional = {"dask", "numba", "sitecustomize", "usercustomize"}
+    for name in sys.stdlib_module_names | installed | optional:
         (path / f"{name}.py").write_text(poison)
     (path / ".numba_config.yaml").write_text("cache_dir: foreign\n")
     for name, sample in INPUTS.items():
@@ -94,8 +85,13 @@ def executed(folder):
     return (folder / "executed").read_text() if (folder / "executed").exists() else ""
 
 
-def test_every_command_is_called():
+def commands_with(option):
+    return [name for name in COMMANDS if any(option in each.opts for each in cli.get_command(Context(cli), name).params)]
+
+
+def test_every_command_is_called_and_those_that_can_with_workers():
     assert set(CALLS) == set(COMMANDS)
+    assert [command for command in commands_with("--jobs") if "--jobs 2" not in CALLS[command]] == []
 
 
 @pytest.mark.parametrize("command", CALLS)
@@ -110,8 +106,9 @@ def test_no_command_executes_code_of_the_working_folder(command, folder, program
     assert run.returncode in (0, 1), run.stderr
 
 
-def test_a_watching_command_executes_none_either(folder, program):
-    words = [*program, "check", "app.yaml", "--watch"]
+@pytest.mark.parametrize("command", commands_with("--watch"))
+def test_a_watching_command_executes_none_either(command, folder, program):
+    words = [*program, command, *CALLS[command].split(), "--watch"]
     with subprocess.Popen(
         words, cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as run:

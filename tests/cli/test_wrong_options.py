@@ -28,6 +28,7 @@ APP = ROOT / "samples" / "bodas-test-simple.yaml"
             ["--set", "Executor_Task.period=2ms", "-o", "x.json"],
             "'x.json' does not end with .amxmi or .yaml or .yml",
         ),
+        ("optimize", ["--time-limit", "nan"], "'nan' is not a finite number"),
         ("optimize", ["-o", "x.json"], "'x.json' does not end with .amxmi or .yaml or .yml"),
         (
             "calibrate",

@@ -104,6 +104,17 @@ def test_a_rule_that_fails_is_a_finding(tmp_path):
     assert finding.object == "L"
 
 
+def test_no_more_findings_of_a_rule_are_kept_than_fit_into_memory(tmp_path, monkeypatch):
+    monkeypatch.setattr("amalthea_uros.validate.engine.RULE_FINDINGS", 2)
+    rule = registry.check("INC-SW-LABELSIZE")
+    for number, rules in ((2, 2 * [rule.id]), (3, [rule.id, rule.id, "CHK002"])):
+        labels = "".join(f'<labels name="L{index}"/>' for index in range(number))
+        found = run(model(f"<swModel>{labels}</swModel>", tmp_path), [rule])
+        assert [finding.rule for finding in found] == rules
+    assert found[-1].message == "the rule INC-SW-LABELSIZE has more than 2 findings; it is not checked further"
+    assert found[-1].severity is found[0].severity
+
+
 def test_only_what_is_selected_is_imported():
     code = (
         "import sys; from amalthea_uros.cli.main import cli\n"

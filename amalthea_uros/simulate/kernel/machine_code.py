@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from functools import cache
-from hashlib import blake2b
-from inspect import getsource
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
@@ -69,15 +67,12 @@ _MODULES = (
 #: Seconds after which the speed of a run is known, and about how long numba takes to compile the kernel.
 _KNOWN, _COMPILING = 0.2, 25.0
 
-#: With what the name of the compiled function begins.
-_PREFIX = "kernel_"
-
 
 @cache
 def effort() -> CompilationEffort:
     """What the kernel has taken as Python in this process: the runs of a campaign count together."""
     sources = [Path(str(module.__file__)) for module in (sys.modules[__name__], *_MODULES, layout)]
-    return CompilationEffort("the simulation", sources, f"{_PREFIX}*", _COMPILING)
+    return CompilationEffort("the simulation", sources, "run_*", _COMPILING)
 
 
 def is_worth_it(seconds: float, seconds_left: float) -> bool:
@@ -90,7 +85,7 @@ def is_worth_it(seconds: float, seconds_left: float) -> bool:
 @cache
 def compiled() -> CompiledKernel:
     """The kernel as machine code, which numba keeps for the next time; its memory must be an array of int64."""
-    from numba import njit
+    from numba import int64, njit
 
     namespaces = {module: dict(vars(module)) for module in _MODULES}
     machine = {
@@ -101,10 +96,9 @@ def compiled() -> CompiledKernel:
     for namespace in namespaces.values():
         namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
     names = {"__name__": __name__, "run_kernel": namespaces[loop]["run_kernel"], "_numbers_of": _address()}
+    # numba knows the file of this function, by which it names what it keeps.
     kernel = FunctionType(_run.__code__, names, "run")
-    # numba looks at the file of this function only, to see whether its machine code is out of date.
-    kernel.__qualname__ = _name()
-    return machine_code(kernel, "int64(int64[::1])")
+    return machine_code(kernel, (int64[::1],), effort().sources)
 
 
 def _run(memory: Memory) -> int:
@@ -143,10 +137,3 @@ def _functions(module: ModuleType) -> list[FunctionType]:
 
 def _is_in(value: object, machine: dict[FunctionType, Any]) -> bool:
     return isinstance(value, FunctionType) and value in machine
-
-
-@cache
-def _name() -> str:
-    """A name that changes with every change of the kernel."""
-    sources = "".join(getsource(module) for module in (*_MODULES, layout, sys.modules[__name__]))
-    return f"{_PREFIX}{blake2b(sources.encode(), digest_size=8).hexdigest()}"

@@ -101,6 +101,7 @@ def test_an_unknown_profile(tmp_path, monkeypatch, profile, message, advice):
         ("base: xrce", "unknown profile 'xrce'"),
         ("title: without a base", "the profile 'own' does not name the one that it changes"),
         ("base: xrce-dds\nsizes: {acknowledgment: 9 B}", "unknown size 'acknowledgment'"),
+        ("base: xrce-dds\nsizes: {message_header: 1 GB}", "message_header: must not be greater than 64 KiB"),
         ("base: xrce-dds\nsending: {timout: 9 ms}", "unknown key 'timout'"),
         ("base: xrce-dds\noptions: {RMW_UXRCE_MTU: 3}", "unknown build option 'RMW_UXRCE_MTU'"),
         ("base: xrce-dds\nwaiting: {resolution: -1 ms}", "must not be negative"),
