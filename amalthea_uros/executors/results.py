@@ -157,11 +157,11 @@ class ExecutorOccurrences:
     ----------
     sent : by the names of transmissions; None if that has no bound
     lateness : of the end of an iteration after what began it, by the names of tasks; None if that has no bound
-    again : what is sent again besides, by the names of transmissions; None if that has no bound
+    again : what is sent again besides, by the names of transmissions; or why that has no bound
     overrunning : the tasks of loops of which a wait and an iteration can take longer than the period, or for an unknown time
     """
 
     sent: Mapping[str, EventModel | None] = field(default_factory=dict)
     lateness: Mapping[str, Time | None] = field(default_factory=dict)
-    again: Mapping[str, EventModel | None] = field(default_factory=dict)
+    again: Mapping[str, EventModel | str] = field(default_factory=dict)
     overrunning: frozenset[str] = frozenset()

@@ -286,6 +286,17 @@ def test_only_the_parts_that_are_missing_are_sent_again():
     assert milliseconds(run.calls["go"]) == [111]
 
 
+PINGING = TEXT.replace("{spin: 1 s}", "[{spin_some: 10 ms}, {ping: 20 ms, attempts: 2, every: 10 s}, {sleep: 1 ms}]")
+
+
+def test_a_ping_that_is_lost_is_sent_again_until_its_last_attempt():
+    """Each attempt waits for its 10 ms and 100 ms more; of the second one, request and reply take 1 ms each, and the agent 1 ms."""
+    assert milliseconds(played(PINGING, to_agent=[1]).calls["Executor_ping"]) == [1 + 110 + 3]
+    lost = played(PINGING, to_agent=[1, 1], until=600)
+    assert milliseconds(lost.calls["Executor_ping"]) == [2 * (1 + 110)]
+    assert [each.timeouts for each in lost.result.executors] == [0, 1]
+
+
 # What is stated decides what is lost.
 
 

@@ -28,10 +28,9 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
-from amalthea_uros.executors.bounds.publications import sending_times
+from amalthea_uros.executors.bounds.occurrences import message_times
 from amalthea_uros.executors.bounds.transmissions import (
     agent_hop,
-    arrival_jitter,
     process_hop,
     received,
     sent,
@@ -65,11 +64,15 @@ def evaluate_executors_and_messages(
     ----------
     solution : for unknown phases, in which any job can take what comes from outside
     """
-    jitter, sending, host = arrival_jitter(solution), sending_times(solution), evaluate_host(solution)
-    executors = Results(evaluate_executors(solution, sending=sending, extra_jitter=jitter))
+    times, host = message_times(solution), evaluate_host(solution)
+    executors = Results(evaluate_executors(solution, sending=times.sending, extra_jitter=times.jitter))
     system = solution.context.system
     evaluator = MessageChains(
-        ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending, HostHops(host, solution)
+        ChainEvaluator(solution),
+        CallbackHops(executors, times.jitter, system),
+        times.sending,
+        times.waits,
+        HostHops(host, solution),
     )
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
     crossing = [chain for chain in system.events.chains if crosses(chain, solution.context.dataflow)]
@@ -97,11 +100,13 @@ class MessageChains:
     Attributes
     ----------
     sending : how long a callback is held up by each message that it sends, by the names of transmissions
+    waits : how long reliable messages can wait for missing ones, by the names of transmissions
     """
 
     evaluator: ChainEvaluator
     callbacks: CallbackHops
     sending: Mapping[str, Span]
+    waits: Mapping[str, Time | None]
     host: HostHops
     segments: Segments = field(init=False)
 
@@ -172,7 +177,7 @@ class MessageChains:
 
     def _message(self, before: ChainSegment | None, transmission: Transmission, hops: list[Hop]) -> Iterator[Hop]:
         yield from self._message_hops(before, transmission, hops)
-        if wait := wait_for_missing(transmission, self.context.system):
+        if wait := wait_for_missing(transmission, self.context.system, self.waits):
             yield wait
 
     def _message_hops(self, before: ChainSegment | None, transmission: Transmission, hops: list[Hop]) -> Iterator[Hop]:
@@ -237,7 +242,7 @@ class MessageChains:
         before: ChainSegment | None = None
         for segment in segments:
             if isinstance(segment, Transmission):
-                if segment.wire in lossy:
+                if segment.wire in lossy and self.waits.get(segment.name) is None:
                     yield f"messages can be lost on {segment.wire!r}"
                 if segment.is_dropped_when_busy:
                     yield f"a message of {segment.topic!r} is dropped if another thread of the middleware is sending"
