@@ -286,7 +286,8 @@ def test_only_the_parts_that_are_missing_are_sent_again():
     assert milliseconds(run.calls["go"]) == [111]
 
 
-PINGING = TEXT.replace("{spin: 1 s}", "[{spin_some: 10 ms}, {ping: 20 ms, attempts: 2, every: 10 s}, {sleep: 1 ms}]")
+LOOP, WITH_PING = "{spin: 1 s}", "[{spin_some: 10 ms}, {ping: 20 ms, attempts: 2, every: 10 s}, {sleep: 1 ms}]"
+PINGING = TEXT.replace(LOOP, WITH_PING)
 
 
 def test_a_ping_that_is_lost_is_sent_again_until_its_last_attempt():
@@ -369,7 +370,7 @@ def test_machine_code_loses_alike(monkeypatch):
 
     pytest.importorskip("numba")
     text = RELIABLE.replace(EVERY, "70 ms\n          phase: 10 ms").replace("chains:", LATER.replace("2 s", "90 ms"))
-    text = text.replace(STATED, "10 %")
+    text = text.replace(STATED, "10 %").replace(LOOP, WITH_PING.replace("10 s", "300 ms"))
     system, options = (
         describe_text(text).assembly.system,
         Options(duration=Duration(5 * SECOND), traced=(0, Duration(5 * SECOND))),
