@@ -236,14 +236,15 @@ class Cycle:
     def _until_read_by_publication(self, reading: Time) -> Time | None:
         """How long it can take until a publication of a timer has read everything.
 
-        From any time, the timer is due again after its period at most, and called a cycle later at most.
+        From any time, the timer is due again after its period at most, and called a cycle later at most. A publication that is under
+        way ends before, when it has read the receive backlog.
         """
         if is_refused(reading, self.publication_distance, self.processor, self.solved):
             return None
         cycle = self._besides_publications
         times = [(longest_until_due(each), cycle.longest, cycle.until_end(each)) for each in self._publishing_timers]
         known = [sum(filter(None, parts)) for parts in times if None not in parts]
-        return min(known) + reading if known else None
+        return min(known) + 2 * reading if known else None
 
     @property
     def publication_distance(self) -> Time | None:
