@@ -45,7 +45,7 @@ LINES = {
     "simulate": 8611,
     "source": 3550,
     "spec": 2965,
-    "timing": 5671,
+    "timing": 5676,
     "trace": 5073,
     "units": 206,
     "uros": 7643,
