@@ -9,6 +9,7 @@ from fractions import Fraction
 from amalthea_uros._internal.graphs import reached
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import ProcessorResult
+from amalthea_uros.executors.semantics.loops import busy_threads
 from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Task
 from amalthea_uros.perf.stimuli import RelativePeriodic
@@ -38,7 +39,7 @@ def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
     if len(known) < len(context.system.cores):
         certain = solution.certain_loads_of(allocated_cores(context.system))
     for core in context.system.cores:
-        best, mean, worst = _loads(core, solution) if core in known else (None, None, None)
+        best, mean, worst = _loads(core, solution) if core in known else (None, None, _of_busy(core, solution))
         yield ProcessorResult(
             name=core,
             frequency=context.demand_model.frequency(core),
@@ -47,6 +48,15 @@ def processor_results(solution: Solution) -> Iterator[ProcessorResult]:
             worst=worst,
             at_least=certain.get(core, Fraction(0)) if worst is None else _certain_load(context.on_core(core), core, solution),
         )
+
+
+def _of_busy(core: str, solution: Solution) -> Fraction | None:
+    """The worst-case load of a core on which nothing is unknown but threads that never sleep: all that others leave of it."""
+    here = [item.name for item in solution.context.on_core(core)]
+    unknown = {name for name in here if not solution.is_known(name)}
+    if not unknown or unknown - busy_threads(solution.context.system).keys() or not solution.is_closed(core):
+        return None
+    return max(Fraction(1), _load([name for name in here if name not in unknown], core, solution).worst)
 
 
 def _certain_overload(name: str, solution: Solution) -> Response | None:

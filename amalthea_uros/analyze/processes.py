@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 
 from amalthea_uros.analyze.loads import share_of_core, without_doubtful_overload
@@ -11,11 +10,12 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import ProcessResult
 from amalthea_uros.executors.bounds.solved_system import METHOD
 from amalthea_uros.executors.results import ExecutorResult
+from amalthea_uros.executors.semantics.losses import can_be_sent_again, publications
 from amalthea_uros.judge.evidence import Ends, ProcessEvidence, ProvedLoss
 from amalthea_uros.judge.limits import activation_limit, deadline_limit, deadline_of
 from amalthea_uros.judge.verdict import lost_jobs, prove_process
-from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.software import Preemption, Process, Task
+from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import ASSUMPTION
 from amalthea_uros.timing.basics.time_base import max_time, min_time
 from amalthea_uros.timing.event_models.models import EventModel, can_be_dense
@@ -25,9 +25,11 @@ from amalthea_uros.timing.scheduling.scheduled import preemption
 from amalthea_uros.units import Time
 
 
-def _is_sent_by(name: str, executors: Iterable[Executor]) -> bool:
-    handles = (handle for executor in executors for handle in executor.handles)
-    return any(publication.transmission == name for handle in handles for publication in handle.publications)
+def _is_sent(name: str, system: System) -> bool:
+    """Whether an executor sends a message, or the middleware sends it again."""
+    message = system.transmissions.get(name)
+    is_repeated = message is not None and can_be_sent_again(message, system)
+    return is_repeated or any(publication.transmission == name for publication in publications(system))
 
 
 def process_result(name: str, solution: Solution, executor: ExecutorResult | None) -> ProcessResult:
@@ -41,7 +43,7 @@ def process_result(name: str, solution: Solution, executor: ExecutorResult | Non
         response, demand, time_base = migrating.response, migrating.demand, migrating.time_base
     # Iterations, and what they send, can be later than any time that is stated.
     iterates = activated_with(name, context) is not None
-    is_stated = response is None and not iterates and not _is_sent_by(name, context.system.executors)
+    is_stated = response is None and not iterates and not _is_sent(name, context.system)
     events = solution.event_models.get(name) or (context.stated_activations(name) if is_stated else None)
     if migrating is not None:
         events = migrating.events

@@ -160,13 +160,13 @@ class ExecutorOccurrences:
     ----------
     sent : by the names of transmissions; None if that has no bound
     lateness : of the end of an iteration after what began it, by the names of tasks; None if that has no bound
-    again : what is sent again besides, by the names of transmissions; None if that has no bound
+    again : what is sent again besides, by the names of transmissions; or why that has no bound
     overrunning : the tasks of loops of which a wait and an iteration can take longer than the period, or for an unknown time
     """
 
     sent: Mapping[str, EventModel | None] = field(default_factory=dict)
     lateness: Mapping[str, Time | None] = field(default_factory=dict)
-    again: Mapping[str, EventModel | None] = field(default_factory=dict)
+    again: Mapping[str, EventModel | str] = field(default_factory=dict)
     overrunning: frozenset[str] = frozenset()
 
 
@@ -174,12 +174,13 @@ def merged_occurrences(parts: Iterable[ExecutorOccurrences]) -> ExecutorOccurren
     """The occurrences of the executors of all controllers."""
     every = list(parts)
     return ExecutorOccurrences(
-        sent=_merged(each.sent for each in every),
-        lateness=_merged(each.lateness for each in every),
-        again=_merged(each.again for each in every),
+        sent=merged(each.sent for each in every),
+        lateness=merged(each.lateness for each in every),
+        again=merged(each.again for each in every),
         overrunning=frozenset(name for each in every for name in each.overrunning),
     )
 
 
-def _merged(mappings: Iterable[Mapping[str, V]]) -> dict[str, V]:
+def merged(mappings: Iterable[Mapping[str, V]]) -> dict[str, V]:
+    """Several mappings as one, whose names differ."""
     return {name: value for each in mappings for name, value in each.items()}

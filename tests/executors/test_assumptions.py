@@ -13,6 +13,7 @@ from played_executors import Spans, play
 from random_executors import violations
 
 from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
+from amalthea_uros.executors.bounds.sequences import CycleSequence
 from amalthea_uros.perf.executors import LoopKind, ThreadLoop, TriggerCondition, TriggerKind
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.software import Preemption
@@ -44,7 +45,9 @@ def backlog(arrivals, length, reads=lambda _: 1, newest_first=False):
 
 @given(st.integers(2, 12), st.integers(0, 60), st.integers(1, 2), st.integers(1, 11), st.randoms())
 def test_no_schedule_has_more_items_in_the_buffer(interval, jitter, parts, length, random):
-    most = max_backlog([Arriving(events=SporadicEvents(interval), jitter=jitter, parts=parts)], length, length)
+    most = max_backlog(
+        [Arriving(events=SporadicEvents(interval), jitter=jitter, parts=parts)], length, CycleSequence(length, length)
+    )
     if most is None:
         return
     times = [number * interval + random.randint(0, jitter) for number in range(30)]
@@ -54,7 +57,7 @@ def test_no_schedule_has_more_items_in_the_buffer(interval, jitter, parts, lengt
 
 
 def test_the_bound_of_the_backlog_is_reached():
-    assert backlog(BURST, LENGTH)[0] == max_backlog([ITEMS], LENGTH, LENGTH)
+    assert backlog(BURST, LENGTH)[0] == max_backlog([ITEMS], LENGTH, CycleSequence(LENGTH, LENGTH))
 
 
 @pytest.mark.parametrize(
@@ -69,7 +72,7 @@ def test_the_bound_of_the_backlog_is_reached():
     ],
 )
 def test_each_assumption_about_the_backlog_is_needed(arrivals, change):
-    most = max_backlog([ITEMS], LENGTH, LENGTH)
+    most = max_backlog([ITEMS], LENGTH, CycleSequence(LENGTH, LENGTH))
     seen, oldest = backlog(arrivals, **{"length": LENGTH} | change)
     assert seen > most or oldest > most * LENGTH
 

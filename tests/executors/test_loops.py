@@ -262,7 +262,7 @@ def test_a_loop_that_waits_with_a_timeout_is_busy_while_a_timer_is_kept_back():
     )
     found = analyze_system(model)
     core = found.processors[found.processes["Executor"].processor]
-    assert (core.worst, found.processes["Executor"].verdict) == (None, Verdict.UNKNOWN)
+    assert (core.worst, found.processes["Executor"].verdict) == (1, Verdict.UNKNOWN)
     assert core.at_least == 0
     assert any("kept back by the trigger condition" in finding.message for finding in found.findings)
     assert "EXE016" in rules(model)

@@ -63,7 +63,6 @@ def test_a_chain_over_a_reliable_message_has_no_bound():
     [
         ("losses: {to_agent: 1 per 10 s}", "loses_messages: true", "how many are lost is not stated"),
         ("1 per 10 s", "1 %", "any number of messages can be lost"),
-        ("best-effort", "reliable", "can wait for a missing one before it"),
         ("executor: {", "reliable: {waits: false}\n  executor: {", "not each reliable message is a publication that waits"),
         ("96 B", "2 kB", "in several parts"),
         ("100 Mbit/s, latency: 2 ms", "100 Mbit/s, latency: 600 ms", "how often it is sent again"),

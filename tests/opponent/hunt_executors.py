@@ -7,7 +7,8 @@
   code with the simulation; every call has the same response time;
 - bounds: a random description with every construct, analysed, and simulated with the least and the greatest of everything and with
   two seeds: no observed value is beyond a bound, nothing is lost that cannot be, and no limit is missed that is met;
-- items: the same of a description in which the thread of a loop does more than spin.
+- items: the same of a description in which the thread of a loop does more than spin;
+- losses: the same of a description whose wire loses a stated number of messages.
 
 `--only calls` and `--only bounds` leave the other one out. It prints each kind of failure with its seed, and writes the smallest
 description of each to the folder. At the end it prints a table: for each construct the number of observed maxima of applications with
@@ -26,14 +27,19 @@ from pathlib import Path
 
 import yaml
 from opponent.executors.calls import different_calls
-from opponent.executors.claims import false_claims
-from opponent.executors.descriptions import Section, random_description
+from opponent.executors.claims import false_claims, runs_of
+from opponent.executors.descriptions import random_description
 from opponent.executors.loop_items import description_with_items
+from opponent.executors.lossy import description_with_losses
 from opponent.executors.shrinking import kind_of, shrunk
 from opponent.executors.tally import Tally
 
+from amalthea_uros.units import SECOND
+
 #: How the descriptions of each kind of hunt are drawn.
-DESCRIPTIONS = {"bounds": random_description, "items": description_with_items}
+DESCRIPTIONS = {"bounds": random_description, "items": description_with_items, "losses": description_with_losses}
+#: The runs of those that need others.
+RUNS = {"losses": runs_of(2 * SECOND, (1,))}
 
 Found = tuple[int, list[str], Tally]
 Hunt = Callable[[int, Tally], list[str]]
@@ -42,10 +48,14 @@ Hunt = Callable[[int, Tally], list[str]]
 def hunt(only: str, heartbeats: bool, seed: int) -> Found:
     """The false answers about the applications of a seed."""
     tally, said = Tally(), []
-    bounds = partial(false_claims, heartbeats=heartbeats)
     hunts: dict[str, Hunt] = {
         "calls": different_calls,
-        **{kind: lambda seed, tally, draw=draw: bounds(draw(seed), tally) for kind, draw in DESCRIPTIONS.items()},
+        **{
+            kind: lambda seed, tally, kind=kind, draw=draw: false_claims(
+                draw(seed), tally, heartbeats=heartbeats, runs=RUNS.get(kind, ())
+            )
+            for kind, draw in DESCRIPTIONS.items()
+        },
     }
     for name, each in hunts.items():
         if only in (name, "all"):
@@ -56,12 +66,12 @@ def hunt(only: str, heartbeats: bool, seed: int) -> Found:
     return seed, said, tally
 
 
-def written(seed: int, text: str, folder: Path, heartbeats: bool, draw: Callable[[int], Section]) -> Path:
+def written(seed: int, text: str, folder: Path, heartbeats: bool, kind: str) -> Path:
     """The smallest description about which something of this kind is said, beside what is said."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"seed-{seed}-{sum(1 for _ in folder.glob(f'seed-{seed}-*.yaml'))}.yaml"
-    false = partial(false_claims, heartbeats=heartbeats)
-    content = shrunk(draw(seed), false, kind_of(text))
+    false = partial(false_claims, heartbeats=heartbeats, runs=RUNS.get(kind, ()))
+    content = shrunk(DESCRIPTIONS.get(kind, random_description)(seed), false, kind_of(text))
     said = [f"# {each}" for each in false(content)]
     path.write_text("\n".join([*said, yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=130)]))
     return path
@@ -86,7 +96,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder for the smallest descriptions")
     parser.add_argument("--without-heartbeats", action="store_true", help="of the middleware, in simulations")
     arguments = parser.parse_args()
-    heartbeats, draw = not arguments.without_heartbeats, DESCRIPTIONS.get(arguments.only, random_description)
+    heartbeats = not arguments.without_heartbeats
     first, end = map(int, arguments.seeds.split(".."))
     total, kinds, failing, begin = Tally(), Counter[str](), 0, time.monotonic()
     for seed, said, tally in _results(partial(hunt, arguments.only, heartbeats), range(first, end), arguments.jobs):
@@ -97,7 +107,7 @@ def main() -> None:
             if kinds[kind] == 1:
                 print(f"seed {seed}: {text}", flush=True)  # noqa: T201
                 if arguments.out and not text.startswith(("calls", "hunt")):
-                    print(f"    {written(seed, text, arguments.out, heartbeats, draw)}", flush=True)  # noqa: T201
+                    print(f"    {written(seed, text, arguments.out, heartbeats, arguments.only)}", flush=True)  # noqa: T201
     print(total.table())  # noqa: T201
     print("\n".join(f"{count:6} x {kind}" for kind, count in kinds.most_common()))  # noqa: T201
     print(total.summary())  # noqa: T201

@@ -286,6 +286,18 @@ def test_only_the_parts_that_are_missing_are_sent_again():
     assert milliseconds(run.calls["go"]) == [111]
 
 
+LOOP, WITH_PING = "{spin: 1 s}", "[{spin_some: 10 ms}, {ping: 20 ms, attempts: 2, every: 10 s}, {sleep: 1 ms}]"
+PINGING = TEXT.replace(LOOP, WITH_PING)
+
+
+def test_a_ping_that_is_lost_is_sent_again_until_its_last_attempt():
+    """Each attempt waits for its 10 ms and 100 ms more; of the second one, request and reply take 1 ms each, and the agent 1 ms."""
+    assert milliseconds(played(PINGING, to_agent=[1]).calls["Executor_ping"]) == [1 + 110 + 3]
+    lost = played(PINGING, to_agent=[1, 1], until=600)
+    assert milliseconds(lost.calls["Executor_ping"]) == [2 * (1 + 110)]
+    assert [each.timeouts for each in lost.result.executors] == [0, 1]
+
+
 # What is stated decides what is lost.
 
 
@@ -358,7 +370,7 @@ def test_machine_code_loses_alike(monkeypatch):
 
     pytest.importorskip("numba")
     text = RELIABLE.replace(EVERY, "70 ms\n          phase: 10 ms").replace("chains:", LATER.replace("2 s", "90 ms"))
-    text = text.replace(STATED, "10 %")
+    text = text.replace(STATED, "10 %").replace(LOOP, WITH_PING.replace("10 s", "300 ms"))
     system, options = (
         describe_text(text).assembly.system,
         Options(duration=Duration(5 * SECOND), traced=(0, Duration(5 * SECOND))),

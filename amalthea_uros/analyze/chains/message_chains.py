@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import chain
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.records import dataclass, field, replace
@@ -28,10 +29,9 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
-from amalthea_uros.executors.bounds.publications import sending_times
+from amalthea_uros.executors.bounds.occurrences import MessageTimes, message_times
 from amalthea_uros.executors.bounds.transmissions import (
     agent_hop,
-    arrival_jitter,
     process_hop,
     received,
     sent,
@@ -65,17 +65,16 @@ def evaluate_executors_and_messages(
     ----------
     solution : for unknown phases, in which any job can take what comes from outside
     """
-    jitter: dict[str, Time | None] = {}
-    sending: dict[str, Span] = {}
-    results: list[ExecutorResult] = []
-    for client in solution.clients:
-        own_jitter, own_sending = arrival_jitter(client), sending_times(client)
-        results += evaluate_executors(client, sending=own_sending, extra_jitter=own_jitter)
-        jitter |= own_jitter
-        sending |= own_sending
-    executors, host, system = Results(results), evaluate_host(solution), solution.context.system
+    by_client = [(client, message_times(client)) for client in solution.clients]
+    results = (evaluate_executors(each, sending=own.sending, extra_jitter=own.jitter) for each, own in by_client)
+    executors, host = Results(chain.from_iterable(results)), evaluate_host(solution)
+    times, system = MessageTimes.merged(own for _, own in by_client), solution.context.system
     evaluator = MessageChains(
-        ChainEvaluator(solution), CallbackHops(executors, jitter, system), sending, HostHops(host, solution)
+        ChainEvaluator(solution),
+        CallbackHops(executors, times.jitter, system),
+        times.sending,
+        times.waits,
+        HostHops(host, solution),
     )
     limited = {each.chain for each in system.constraints.constraints if isinstance(each, LatencyConstraint)}
     crossing = [chain for chain in system.events.chains if crosses(chain, solution.context.dataflow)]
@@ -103,11 +102,13 @@ class MessageChains:
     Attributes
     ----------
     sending : how long a callback is held up by each message that it sends, by the names of transmissions
+    waits : how long reliable messages can wait for missing ones, by the names of transmissions
     """
 
     evaluator: ChainEvaluator
     callbacks: CallbackHops
     sending: Mapping[str, Span]
+    waits: Mapping[str, Time | None]
     host: HostHops
     segments: Segments = field(init=False)
 
@@ -178,7 +179,7 @@ class MessageChains:
 
     def _message(self, before: ChainSegment | None, transmission: Transmission, hops: list[Hop]) -> Iterator[Hop]:
         yield from self._message_hops(before, transmission, hops)
-        if wait := wait_for_missing(transmission, self.context.system):
+        if wait := wait_for_missing(transmission, self.context.system, self.waits):
             yield wait
 
     def _message_hops(self, before: ChainSegment | None, transmission: Transmission, hops: list[Hop]) -> Iterator[Hop]:
@@ -245,7 +246,7 @@ class MessageChains:
         before: ChainSegment | None = None
         for segment in segments:
             if isinstance(segment, Transmission):
-                if segment.wire in lossy:
+                if segment.wire in lossy and self.waits.get(segment.name) is None:
                     yield f"messages can be lost on {segment.wire!r}"
                 if segment.is_dropped_when_busy:
                     yield f"a message of {segment.topic!r} is dropped if another thread of the middleware is sending"

@@ -27,7 +27,7 @@ from amalthea_uros.executors.semantics.loops import longest_until_due
 from amalthea_uros.perf.events import Event, ProcessChange, ProcessEvent
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.relays import comes_regularly
+from amalthea_uros.timing.activation.relays import arrives_regularly
 from amalthea_uros.timing.activation.releases import latest_first_release
 from amalthea_uros.timing.dataflow.links import UNTIMED
 from amalthea_uros.timing.dataflow.routes import routes
@@ -119,7 +119,7 @@ class CallbackHops:
         interval, jitter = longest_until_due(handle), self.jitter.get(handle.name, 0)
         if handle.kind is HandleKind.TIMER or interval is None:
             return interval
-        return None if jitter is None or not comes_regularly(handle, self.system) else interval + handle.jitter + jitter
+        return None if jitter is None or not arrives_regularly(handle, self.system) else interval + handle.jitter + jitter
 
 
 def task_hop(segment: TaskSegment, entry: EntryKind, is_last: bool, evaluator: ChainEvaluator) -> Hop:

@@ -142,7 +142,7 @@ class Interference:
                 best_rate += best / key[0]
                 greatest += worst * ((2 * LIMIT + key[1]) / key[0] + 1)
             others = others if part else (*others, task)
-            rate += approximate_demand_rate(task)
+            rate += task.approximate_demand_rate
             found.append(cls(tasks, number, rows, count, others, rate, best_rate, greatest, supply))
         return found
 
@@ -200,7 +200,7 @@ class Interference:
         """
         if self.rate < 1 - _DOUBT:
             return False
-        rate = sum(map(demand_rate, self.tasks), Fraction(0))
+        rate = sum((task.demand_rate for task in self.tasks), Fraction(0))
         return rate > 1 or (rate == 1 and fixed > 0)
 
     def _supplied_window(self, fixed: Time, start: Time) -> Time | None:
@@ -216,19 +216,7 @@ class Interference:
 
     def overloads_with(self, task: AnalysedTask) -> bool:
         """Whether these tasks and another one demand more than the supply, exactly."""
-        excess = self.rate + approximate_demand_rate(task) - float(self.supply.rate)
+        excess = self.rate + task.approximate_demand_rate - float(self.supply.rate)
         if abs(excess) > _DOUBT:
             return excess > 0
-        return sum((demand_rate(other) for other in self.tasks), demand_rate(task)) > self.supply.rate
-
-
-def demand_rate(task: AnalysedTask) -> Fraction:
-    """Maximum demand of a task per time in the long run."""
-    return task.demand.mean_worst * task.events.rate
-
-
-def approximate_demand_rate(task: AnalysedTask) -> float:
-    """The demand rate as a float, which is faster."""
-    if isinstance(task.events, PeriodicEvents):
-        return sum([frame.worst / frame.prescaler for frame in task.demand.frames]) / task.events.period
-    return float(demand_rate(task))
+        return sum((other.demand_rate for other in self.tasks), task.demand_rate) > self.supply.rate

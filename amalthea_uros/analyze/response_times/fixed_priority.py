@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from amalthea_uros.analyze.response_times.blocking import Blocking
-from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
+from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.kernel import greatest_fixed_point
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.response_times.task import AnalysedTask, Supply
@@ -132,7 +132,7 @@ def in_busy_period(
     level : what is served before the end of the busy period, including the task, alone or with others
     other : the result of another method, if this one gives no bound
     """
-    if sum(map(demand_rate, level)) > supply.rate:
+    if sum(each.demand_rate for each in level) > supply.rate:
         return other
     window = Interference.of(level, supply).window(blocking, 1)
     if window is None:
@@ -156,7 +156,7 @@ def max_jobs(*tasks: AnalysedTask) -> int:
 
 def unbounded(best: Time, higher: Interference, task: AnalysedTask, method: str, source: str) -> Response:
     """The response time of a task that is overloaded together with those of higher priority."""
-    rate = higher.rate + float(demand_rate(task))
+    rate = higher.rate + float(task.demand_rate)
     reason = f"overload: tasks at this priority or higher need {percent_text(rate, 1)} % of the core"
     if higher.supply.rate < 1:
         reason += f", and their server provides {percent_text(higher.supply.rate, 1)} %"

@@ -72,7 +72,7 @@ def _iterate(solution: Solution, diverging: set[str]) -> set[str]:
         previous, known_reasons, activations = responses, len(solution.reasons), solution.event_models
         executors = _executor_occurrences(solution, previous if number else None)
         bound_waits(solution, previous)
-        solution.sent_again = {name: each for name, each in executors.again.items() if each is not None}
+        solution.sent_again = {name: each for name, each in executors.again.items() if not isinstance(each, str)}
         solution.event_models = _event_models(solution, diverging, previous, executors)
         responses = {}
         for core in solution.context.system.cores:
@@ -169,8 +169,8 @@ def _with_sent_again(name: str, events: EventModel, executors: ExecutorOccurrenc
     if name not in executors.again:
         return events
     again = executors.again[name]
-    if again is None:
-        raise UnknownError("how often it is sent again, because messages are lost, has no bound")
+    if isinstance(again, str):
+        raise UnknownError(again)
     return aggregated((events, again))
 
 

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from amalthea_uros._internal.records import dataclass, replace
-from amalthea_uros.analyze.response_times.busy_window import Interference, demand_rate
+from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.fixed_priority import max_jobs, of_completions, unbounded
 from amalthea_uros.analyze.response_times.kernel import MAX_STEPS
 from amalthea_uros.analyze.response_times.task import FULL, AnalysedTask
@@ -74,9 +74,9 @@ def _with_all_slices(task: AnalysedTask) -> AnalysedTask:
 
 def _overloads(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interference) -> bool:
     """Whether a task gets less than its demand; slices limit what other tasks of its priority take."""
-    own = demand_rate(task)
-    between = sum((min(own * other.slice / task.slice, demand_rate(other)) for other in others), own)
-    return sum(map(demand_rate, higher.tasks), between) > higher.supply.rate
+    own = task.demand_rate
+    between = sum((min(own * other.slice / task.slice, other.demand_rate) for other in others), own)
+    return sum((each.demand_rate for each in higher.tasks), between) > higher.supply.rate
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ class _Window:
         slices = [jobs * other.slice for other, jobs in zip(self.others, self.pending, strict=True)]
         per_job = task.demand.mean_worst + (task.demand.mean_worst + task.slice - 1) / task.slice * sum(slices)
         longest = max(other.slice for other in self.others)
-        above = sum((demand_rate(other) + other.events.rate * longest for other in self.higher.tasks), Fraction(0))
+        above = sum((other.demand_rate + other.events.rate * longest for other in self.higher.tasks), Fraction(0))
         return task.events.rate * per_job + above < 1
 
     def end(self, job: int, start: Time) -> Time:

@@ -7,11 +7,12 @@ real-time guarantees", RTSS 2003; R. I. Davis and A. Burns, "Hierarchical fixed 
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import EventModel, rescaled
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, rescaled
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, StatedPlace
 from amalthea_uros.units import Time
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.solution import Solution
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class AnalysedTask:
     """A process on one processor.
 
@@ -45,6 +46,18 @@ class AnalysedTask:
     slice: Time = 0
     activation_limit: int = 1
     is_alone: bool = False
+
+    @cached_property
+    def demand_rate(self) -> Fraction:
+        """Maximum demand per time in the long run."""
+        return self.demand.mean_worst * self.events.rate
+
+    @cached_property
+    def approximate_demand_rate(self) -> float:
+        """The demand rate as a float, which is faster."""
+        if isinstance(self.events, PeriodicEvents):
+            return sum([frame.worst / frame.prescaler for frame in self.demand.frames]) / self.events.period
+        return float(self.demand_rate)
 
     @classmethod
     def of(cls, item: ScheduledProcess, solution: Solution) -> AnalysedTask:

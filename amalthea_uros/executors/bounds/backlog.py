@@ -26,6 +26,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.executors.bounds.sequences import CycleSequence
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import received, variation
 from amalthea_uros.executors.semantics.losses import parts, publications, recovers
@@ -83,38 +84,50 @@ def acknowledged(solved: SolvedSystem) -> Mapping[str, Arriving | None]:
     return found
 
 
-def backlog_age(cycle: Time | None, further: Time | None, sending: Mapping[str, Span], solved: SolvedSystem) -> Time | None:
+def backlog_age(
+    cycle: Time | None,
+    further: CycleSequence | None,
+    sending: Mapping[str, Span],
+    solved: SolvedSystem,
+    *,
+    reads_on: bool = False,
+) -> Time | None:
     """The greatest age of an unread message; None if there is no bound.
 
     Parameters
     ----------
     cycle : longest cycle without a wait; None if it has no bound
-    further : longest one in which no publication reads until its acknowledgement
+    further : those after it, in which no publication reads until its acknowledgement
+    reads_on : whether each wait reads on until it has data, or the backlog is empty: then only data take waits of their own
     """
     if cycle is None or further is None:
         return None
-    kinds = [found for _, found in _read_in_iterations(sending, solved)]
+    read = _read_in_iterations(sending, solved)
+    kinds = [found for message, found in read if not reads_on or message.purpose is Purpose.DATA]
     known = [each for each in kinds if each is not None]
     if len(known) < len(kinds):
         return None
     most = max_backlog(known, cycle, further)
+    if most is not None and reads_on:
+        # What comes after the last of them is read in one more wait.
+        most += 1
     if most is None or most == 1:
         return most and cycle
-    return 2 * cycle + (most - 2) * further
+    return 2 * cycle + further.time(most - 2)
 
 
-def max_backlog(kinds: Sequence[Arriving], cycle: Time, further: Time) -> int | None:
+def max_backlog(kinds: Sequence[Arriving], cycle: Time, further: CycleSequence) -> int | None:
     """The most messages that can be unread; None if there is no bound.
 
     Parameters
     ----------
     cycle, further : see `backlog_age`
     """
-    if sum(each.parts * each.events.rate for each in kinds) * further >= 1:
+    if sum(each.parts * each.events.rate for each in kinds) * further.average >= 1:
         return None
     most = 1
     for count in range(1, MAX_BACKLOG):
-        arrived = sum(each.most(cycle + (count - 1) * further) for each in kinds)
+        arrived = sum(each.most(cycle + further.time(count - 1)) for each in kinds)
         most = max(most, arrived - count + 1)
         if arrived <= count:
             return most

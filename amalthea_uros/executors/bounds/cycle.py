@@ -22,10 +22,10 @@ A wait answers the heartbeats that are unread, whose number depends on the cycle
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
-from amalthea_uros._internal.records import dataclass, replace
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import (
     acknowledged,
@@ -34,16 +34,31 @@ from amalthea_uros.executors.bounds.backlog import (
     max_heartbeats,
     reads_all,
 )
-from amalthea_uros.executors.bounds.sent_again import reading_time, sent_again_in, writing_again
+from amalthea_uros.executors.bounds.sent_again import (
+    answers_besides,
+    is_refused,
+    reading_time,
+    repeated,
+    sent_again_in,
+    writing_again,
+)
+from amalthea_uros.executors.bounds.sequences import CycleSequence
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem, ThreadProcessor
 from amalthea_uros.executors.bounds.transmissions import wire_hop
 from amalthea_uros.executors.semantics.demand import IterationDemand
-from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, longest_until_due, longest_wait, min_pace, sleep_of
+from amalthea_uros.executors.semantics.loops import (
+    SLEEP_RESOLUTION,
+    longest_until_due,
+    longest_wait,
+    min_pace,
+    sleep_of,
+    timeout_of,
+)
 from amalthea_uros.executors.semantics.losses import publications, recovers
 from amalthea_uros.executors.semantics.readiness import (
     can_defer,
     has_backlog,
-    independent_handles,
+    is_independent,
     is_message,
     messages,
     others_of_thread,
@@ -65,8 +80,8 @@ from amalthea_uros.executors.semantics.suspension import (
     suspension_of,
     writing_in_wait,
 )
-from amalthea_uros.perf.executors import Executor, Handle, LoopKind
-from amalthea_uros.perf.network import Span
+from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
+from amalthea_uros.perf.network import Direction, Span
 from amalthea_uros.units import Interval, Time
 
 #: After which the number of heartbeats in a wait is considered unbounded.
@@ -99,6 +114,8 @@ class Cycle:
     again : how long it is extended by what is sent again, because messages are lost
     backlog_age : how long a message can wait unread; None if that has no bound, or nothing is acknowledged
     others : an iteration with its wait of each other executor in the loop of the thread
+    usual_others : the same without what the loop does in intervals of its own
+    other_demands : of the other executors in the loop, by their names
     """
 
     executor: Executor
@@ -112,6 +129,8 @@ class Cycle:
     again: Suspension = NONE
     backlog_age: Time | None = None
     others: tuple[IterationPart, ...] = ()
+    usual_others: tuple[IterationPart, ...] = ()
+    other_demands: Mapping[str, IterationDemand] = field(default_factory=dict)
 
     @classmethod
     def of(cls, executor: Executor, solved: SolvedSystem, sending: Mapping[str, Span]) -> Cycle:
@@ -121,10 +140,21 @@ class Cycle:
         ------
         UnknownError : its execution demand, what can preempt it, or what else is done in the loop is unknown.
         """
+        return cls.without_sending(executor, solved).with_sending(sending)
+
+    @classmethod
+    def without_sending(cls, executor: Executor, solved: SolvedSystem) -> Cycle:
+        """The same before it is known how long publications take."""
         processor = solved.processor(executor.task)
         demand = IterationDemand.of(executor, solved.context)
-        takes_one = takes_one_message(executor, solved.context.system.executors)
-        return cls(executor, solved, processor, demand, sending, takes_one)._consistent()
+        system = solved.context.system
+        takes_one = takes_one_message(executor, system)
+        demands = {each.name: IterationDemand.of(each, solved.context) for each in others_of_thread(executor, system.executors)}
+        return cls(executor, solved, processor, demand, {}, takes_one, other_demands=demands)
+
+    def with_sending(self, sending: Mapping[str, Span]) -> Cycle:
+        """The same if publications take such times."""
+        return replace(self, sending=sending)._consistent()
 
     def _consistent(self) -> Cycle:
         """The cycle with the least number of messages that its wait writes."""
@@ -145,7 +175,11 @@ class Cycle:
             writing=writing_in_wait(self.executor, system, self.sending, writes),
         )
         cycle = replace(cycle, again=writing_again(writes.again, self.solved))
-        cycle = replace(cycle, others=tuple(cycle._with_wait(each, writes) for each in self._others_of_thread))
+        others = tuple(cycle._with_wait(each, writes) for each in self._others_of_thread)
+        usual = others
+        if self._intervals:
+            usual = tuple(cycle._with_wait(_without_rare_items(each), writes) for each in self._others_of_thread)
+        cycle = replace(cycle, others=others, usual_others=usual)
         if not acknowledgements(system):
             return cycle
         return replace(cycle, backlog_age=cycle._backlog_age())
@@ -156,8 +190,8 @@ class Cycle:
         cycle = replace(
             self,
             executor=other,
-            demand=IterationDemand.of(other, self.solved.context),
-            takes_one=takes_one_message(other, system.executors),
+            demand=self.other_demands[other.name],
+            takes_one=takes_one_message(other, system),
             session_wait=session_wait(other, system, self.sending, writes),
             writing=writing_in_wait(other, system, self.sending, writes),
         )
@@ -167,48 +201,70 @@ class Cycle:
 
     def _backlog_age(self) -> Time | None:
         """The greatest age of a message in the receive buffer; if this executor does not read in its waits, that of one that does."""
-        if any(recovers(each, self.solved.context.system) for handle in self.executor.handles for each in handle.publications):
+        system = self.solved.context.system
+        publishing = (each for handle in self.executor.handles for each in handle.publications)
+        is_repeated = any(recovers(each, system) for each in publishing) or repeated(Direction.TO_CONTROLLER, self.solved)
+        if is_repeated and (reads_in_waits(self.executor) or timers(self.executor)):
             return self._age_with_losses()
         if reads_in_waits(self.executor):
-            return backlog_age(self.longest, self._longest_without_reading, self.sending, self.solved)
-        ages = [
-            _age_by(each, self.solved, self.sending)
-            for each in sharing(self.executor, self.solved.context.system.executors)
-            if reads_in_waits(each)
-        ]
+            return backlog_age(self.longest, self._without_reading.in_sequence(), self.sending, self.solved)
+        readers = filter(reads_in_waits, sharing(self.executor, system.executors))
+        ages = (_age_by(each, self.solved, self.sending) for each in readers)
         return min((age for age in ages if age is not None), default=None)
 
     def _age_with_losses(self) -> Time | None:
-        """The greatest age of a message if publications wait on a wire that loses some: see `sent_again`."""
-        if not reads_in_waits(self.executor):
-            return min((age for age in self._until_publications if age is not None), default=None)
-        cycle, age = self._longest_besides_publications, Time(0)
+        """The greatest age of a message if some are sent again: see `sent_again`."""
+        age = Time(0)
         for _ in range(_STEPS):
             reading = self.processor.time(0, reading_time(age, self.solved))
-            found = None if cycle is None or reading is None else backlog_age(reading + cycle, cycle, self.sending, self.solved)
+            if reading is None:
+                return None
+            ages = self._until_read_by_wait(reading), self._until_read_by_publication(reading)
+            found = min((each for each in ages if each is not None), default=None)
             if found is None or found == age:
                 return found
             age = found
         return None
 
+    def _until_read_by_wait(self, reading: Time) -> Time | None:
+        cycles = self._besides_publications.in_sequence()
+        if cycles is None or not reads_in_waits(self.executor):
+            return None
+        reads_on = not timers(self.executor) and reading < timeout_of(self.executor)
+        return backlog_age(reading + cycles.longest, cycles, self.sending, self.solved, reads_on=reads_on)
+
+    def _until_read_by_publication(self, reading: Time) -> Time | None:
+        """How long it can take until a publication of a timer has read everything.
+
+        From any time, the timer is due again after its period at most, and called a cycle later at most. A publication that is under
+        way ends before, when it has read the receive backlog.
+        """
+        if is_refused(reading, self.publication_distance, self.processor, self.solved):
+            return None
+        cycle = self._besides_publications
+        times = [(longest_until_due(each), cycle.longest, cycle.until_end(each)) for each in self._publishing_timers]
+        known = [sum(filter(None, parts)) for parts in times if None not in parts]
+        return min(known) + 2 * reading if known else None
+
     @property
-    def _longest_besides_publications(self) -> Time | None:
-        """The longest cycle without a wait, in which publications only write, and nothing again; None if it is not bounded."""
+    def publication_distance(self) -> Time | None:
+        """The greatest distance of the beginnings of two publications that wait; None if no timer publishes, or it has no bound."""
+        times = [(longest_until_due(each), self.longest_with_wait, self.until_end(each)) for each in self._publishing_timers]
+        return min((sum(filter(None, parts)) for parts in times if None not in parts), default=None)
+
+    @property
+    def _publishing_timers(self) -> list[Handle]:
+        """The timers with a publication that waits on a wire with losses."""
+        system = self.solved.context.system
+        return [each for each in timers(self.executor) if any(recovers(one, system) for one in each.publications)]
+
+    @property
+    def _besides_publications(self) -> Cycle:
+        """Cycles in which publications only write, and nothing again."""
         system = self.solved.context.system
         waiting = {each.transmission or "" for each in publications(system) if recovers(each, system)}
         written = {name: Span(most=wire_hop(system.transmissions[name], self.solved).worst) for name in waiting}
-        return replace(self, sending={**self.sending, **written}, again=NONE).longest
-
-    @property
-    def _until_publications(self) -> Iterator[Time | None]:
-        """How long it can take until a publication of a timer has read everything, of an executor whose waits read nothing.
-
-        From any time, the timer is due again after its period at most, and called a cycle later at most.
-        """
-        for handle in timers(self.executor):
-            if any(recovers(each, self.solved.context.system) for each in handle.publications):
-                parts = longest_until_due(handle), self.longest, self.until_end(handle)
-                yield None if None in parts else sum(filter(None, parts))
+        return replace(self, sending={**self.sending, **written}, again=NONE)
 
     def _writes(self) -> ProtocolWrites:
         """How often a wait writes, if the cycle is like this."""
@@ -218,7 +274,11 @@ class Cycle:
         count = None if None in unread else sum(filter(None, unread)) + 1
         # What is sent again in a wait is sent in its cycle.
         again = sent_again_in(self.longest_with_wait, self.solved) if reads_in_waits(self.executor) else 0
-        return ProtocolWrites(acknowledgements=count, heartbeats=0 if again else self._heartbeats, again=again)
+        # What it reads besides came in the time before that, or in its cycle.
+        times = self.backlog_age, self.longest_with_wait
+        replies = answers_besides(None if None in times else sum(filter(None, times)), self.solved)
+        written = None if again is None or replies is None else again + replies
+        return ProtocolWrites(acknowledgements=count, heartbeats=0 if again else self._heartbeats, again=written)
 
     @property
     def _heartbeats(self) -> int | None:
@@ -239,7 +299,7 @@ class Cycle:
     @cached_property
     def has_backlog(self) -> bool:
         """Whether messages can be stored before an iteration that takes them."""
-        return has_backlog(self.executor, self.solved.context.system.executors)
+        return has_backlog(self.executor, self.solved.context.system)
 
     @property
     def sleep(self) -> Time:
@@ -253,8 +313,8 @@ class Cycle:
     @cached_property
     def whole(self) -> IterationPart:
         """The longest iteration: its overhead, and all callbacks that one iteration can call."""
-        always = independent_handles(self.executor)
-        excluded = [handle for handle in self.executor.handles if handle not in always]
+        always = [handle for handle in self.executor.handles if is_independent(handle)]
+        excluded = [handle for handle in self.executor.handles if not is_independent(handle)]
         return self._part(always, excluded, self.demand.spin.upper + self.demand.after.upper)
 
     def _part(self, always: Sequence[Handle], excluded: Sequence[Handle], demand: Time) -> IterationPart:
@@ -280,11 +340,10 @@ class Cycle:
 
     def _possible_with(self, handle: Handle, others: Sequence[Handle]) -> tuple[Sequence[Handle], Sequence[Handle]]:
         """Of some handles those that can all be ready together with another one, and those of which one can be."""
-        always = independent_handles(self.executor)
-        excluded = [each for each in others if each not in always]
         if not self.takes_one:
             return others, ()
-        return [each for each in others if each in always], [] if is_message(handle) else excluded
+        always = [each for each in others if is_independent(each)]
+        return always, [] if is_message(handle) else [each for each in others if not is_independent(each)]
 
     def until_start(self, handle: Handle) -> Time | None:
         """The longest time from when it is fixed what is ready to the start of a callback."""
@@ -312,6 +371,20 @@ class Cycle:
     def longest_with_wait(self) -> Time | None:
         """The longest cycle with a wait that nothing ends before its timeout; None if it is not bounded."""
         return self.longest_with(longest_wait(self.executor))
+
+    def in_sequence(self, wait: Time = 0) -> CycleSequence | None:
+        """Cycles with some wait that follow each other; None if they are not bounded."""
+        longest = self.longest_with(wait)
+        if longest is None or not self._intervals:
+            return None if longest is None else CycleSequence(longest, longest)
+        usual = replace(self, others=self.usual_others).longest_with(wait)
+        return CycleSequence(longest, longest if usual is None else usual, self._intervals)
+
+    @cached_property
+    def _intervals(self) -> tuple[Time, ...]:
+        """The intervals of what the loop of the thread does in intervals of its own."""
+        handles = (handle for each in self._others_of_thread for handle in each.handles)
+        return tuple(handle.interval for handle in handles if _is_rare(handle) and handle.interval)
 
     def longest_with(self, wait: Time) -> Time | None:
         """The longest cycle with some wait, after which the thread has to get its core again; None if it is not bounded."""
@@ -353,9 +426,9 @@ class Cycle:
         )
 
     @property
-    def _longest_without_reading(self) -> Time | None:
-        """The longest cycle without a wait in which no publication reads until its acknowledgement; None if it is not bounded."""
-        return self._longest_of(
+    def _without_reading(self) -> Cycle:
+        """Cycles in which no publication reads until its acknowledgement."""
+        return self._calling(
             each
             for each in self.executor.handles
             if not any(reads_all(publication, self.sending, self.solved.context.system) for publication in each.publications)
@@ -364,11 +437,11 @@ class Cycle:
     @cached_property
     def longest_without_call(self) -> Time | None:
         """The longest cycle without a wait and without a callback; None if it is not bounded."""
-        return self._longest_of(())
+        return self._calling(()).longest
 
-    def _longest_of(self, handles: Iterable[Handle]) -> Time | None:
-        """The longest cycle without a wait in which only some handles are called."""
-        return replace(self, executor=replace(self.executor, handles=tuple(handles))).longest
+    def _calling(self, handles: Iterable[Handle]) -> Cycle:
+        """Cycles in which only some handles are called."""
+        return replace(self, executor=replace(self.executor, handles=tuple(handles)))
 
     def _suspended(self, wait: Time) -> Time | None:
         """How long the beginning of an iteration is suspended, with some wait; None if it is not bounded."""
@@ -400,11 +473,6 @@ class Cycle:
         """The greatest age of a message in the receive backlog, also if none is acknowledged; None if it has no bound."""
         return self.backlog_age if acknowledgements(self.solved.context.system) else self._backlog_age()
 
-    @property
-    def loses_messages(self) -> bool:
-        """Whether messages can be lost on a wire, so that none comes for certain."""
-        return any(wire.loses_messages for wire in self.solved.context.system.network.wires)
-
     @cached_property
     def shortest(self) -> Time:
         """The shortest cycle: nothing is called."""
@@ -413,8 +481,7 @@ class Cycle:
     @cached_property
     def _shortest_besides(self) -> Time:
         """The least time that a cycle takes besides its iteration: all sleeps, and the overhead of the others in the loop."""
-        others = (IterationDemand.of(each, self.solved.context) for each in self._others_of_thread)
-        overhead = sum(each.spin.lower + each.after.lower for each in others)
+        overhead = sum(each.spin.lower + each.after.lower for each in self.other_demands.values())
         return sleep_of(self.executor).lower + overhead // self.time_base
 
     @property
@@ -463,6 +530,15 @@ class Cycle:
         if self.writing.most is None or self.again.most is None:
             return f"a wait has no bound: {(self.writing if self.writing.most is None else self.again).why}"
         return "the processes that preempt it need nearly all of the core"
+
+
+def _is_rare(handle: Handle) -> bool:
+    """Whether a loop does something in an interval of its own."""
+    return handle.kind is HandleKind.LOOP_ITEM and bool(handle.interval)
+
+
+def _without_rare_items(executor: Executor) -> Executor:
+    return replace(executor, handles=tuple(handle for handle in executor.handles if not _is_rare(handle)))
 
 
 def _age_by(executor: Executor, solved: SolvedSystem, sending: Mapping[str, Span]) -> Time | None:

@@ -47,8 +47,8 @@ def handle_result(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time 
     waited_for = why_not_woken(handle, cycle.executor, cycle.has_backlog)
     wait = longest_wait(cycle.executor) if waited_for else 0
     length = cycle.longest_with(wait)
-    delay = _delay(handle, cycle, length, extra_jitter)
-    ready = None if delay.cycles is None or length is None else delay.cycles * length - delay.earlier
+    delay = _delay(handle, cycle, wait, extra_jitter)
+    ready = None if delay.cycles is None or length is None else delay.time - delay.earlier
     stored = storage_of(handle, cycle, extra_jitter) if is_message(handle) and wait and not delay.is_overload else None
     if stored is not None and ready is not None and ready <= stored.most:
         stored = None
@@ -95,15 +95,16 @@ def _unbounded(handle: Handle, cycle: Cycle) -> str:
     return own.why if own.most is None and own.why else cycle.unbounded
 
 
-def _delay(handle: Handle, cycle: Cycle, length: Time | None, extra_jitter: Mapping[str, Time | None]) -> Delay:
+def _delay(handle: Handle, cycle: Cycle, wait: Time, extra_jitter: Mapping[str, Time | None]) -> Delay:
     if not starts_alone(handle, cycle.executor):
         kind = cycle.executor.trigger.kind
         return Delay(cycles=None, reason=f"the trigger condition {kind.value!r} keeps it back until others are ready, too")
+    cycles = cycle.in_sequence(wait)
     if not is_message(handle):
-        return Delay(cycles=1)
-    if length is None:
+        return Delay(cycles=1, time=0 if cycles is None else cycles.longest)
+    if cycles is None:
         return certain_overload(cycle) or Delay(cycles=None, reason=_unbounded(handle, cycle))
-    return delay_of(handle, cycle, length, extra_jitter)
+    return delay_of(handle, cycle, cycles, extra_jitter)
 
 
 def _terms(until_ready: Sequence[TimePart], handle: Handle, cycle: Cycle, worst: Time) -> tuple[TimePart, ...]:
@@ -165,9 +166,11 @@ def _before(cycle: Cycle, delay: Delay, wait: Time) -> TimePart:
     """The further cycles, one for each message before it."""
     count, length = (delay.cycles or 1) - 1, cycle.longest_with(wait) or 0
     why = f"{counted(count, 'message')}, each of which takes an iteration of at most {rounded_time_text(length, Rounding.UP)}"
+    if delay.time < (count + 1) * length:
+        why += ", in a part of which the loop does what it does in intervals"
     if delay.earlier:
         why += f", less {rounded_time_text(delay.earlier, Rounding.DOWN)} by which it arrives later"
-    return TimePart(name="messages before it", most=count * length - delay.earlier, why=why)
+    return TimePart(name="messages before it", most=delay.time - length - delay.earlier, why=why)
 
 
 def _of_iteration(handle: Handle, cycle: Cycle) -> list[TimePart]:
@@ -224,7 +227,7 @@ def evaluate_executors(
     for executor in executors:
         together = sharing(executor, executors)
         stored = stored_messages({each: results[each].handles for each in together}, extra_jitter)
-        needed = slots_of_pool(together, executors, stored)
+        needed = slots_of_pool(together, solved.context.system, stored)
         handles = results[executor].handles
         if executor in cycles:
             handles = Results(with_lost_messages(handles, cycles[executor], stored, needed))

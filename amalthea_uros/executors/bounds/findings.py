@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from fractions import Fraction
 
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
@@ -31,16 +31,16 @@ NEAR_CAPACITY = Fraction(1, 2)
 
 def note_executors(results: Iterable[ExecutorResult], solved: SolvedSystem) -> None:
     """Report what goes wrong in executors, and the assumptions."""
-    notes, executors = solved.context.notes, solved.context.system.executors
-    for executor, result in zip(executors, results, strict=True):
-        _assume(executor, executors, notes)
+    notes = solved.context.notes
+    for executor, result in zip(solved.context.system.executors, results, strict=True):
+        _assume(executor, solved.context.system, notes)
         _note_loop(executor, solved.context.system, result, notes)
-        _note_waiting(executor, executors, notes)
+        _note_waiting(executor, solved.context.system, notes)
         for handle in result.handles:
             _note_handle(handle, executor, notes)
 
 
-def _assume(executor: Executor, others: Sequence[Executor], notes: AnalysisNotes) -> None:
+def _assume(executor: Executor, system: System, notes: AnalysisNotes) -> None:
     notes.assume("executors: the wait set is prepared before the first spin, which allocates memory and takes longer otherwise")
     notes.assume(
         "executors: the buffers of the driver and of the agent have room for all messages that wait; no call returns an error"
@@ -50,16 +50,16 @@ def _assume(executor: Executor, others: Sequence[Executor], notes: AnalysisNotes
     notes.assume(f"executors: {on_time} end on time, whatever the ticks of the operating system are")
     if executor.loop.kind is LoopKind.PERIODIC:
         notes.assume("executors: the real-time clock, by which spin_period sleeps, is not set while it spins")
-    if has_backlog(executor, others):
+    if has_backlog(executor, system):
         notes.assume("executors: stored messages have different time stamps; with equal ones, they come out in reverse order")
-    if shares_session(executor, others):
+    if shares_session(executor, system.executors):
         notes.assume(f"executors: {SESSION_ASSUMPTION}")
 
 
 def _note_loop(executor: Executor, system: System, result: ExecutorResult, notes: AnalysisNotes) -> None:
     growing = next((handle for handle in result.handles if handle.response.is_overload), None)
     if growing is not None:
-        age = "" if has_backlog(executor, system.executors) else _age_after(60 * SECOND, certain_rate(executor, system), result)
+        age = "" if has_backlog(executor, system) else _age_after(60 * SECOND, certain_rate(executor, system), result)
         why = growing.response.reason.removeprefix("overload: ").removesuffix(", so that messages wait longer and longer")
         message = f"messages wait longer and longer in {executor.name!r}: {why}{age}"
         notes.error("EXE012", message, executor)
@@ -88,7 +88,8 @@ def _age_after(time: Time, arriving: Fraction, result: ExecutorResult) -> str:
     return f"; after {time_text(time)} they are at least {rounded_time_text(age, Rounding.DOWN)} old" if age > 0 else ""
 
 
-def _note_waiting(executor: Executor, others: Sequence[Executor], notes: AnalysisNotes) -> None:
+def _note_waiting(executor: Executor, system: System, notes: AnalysisNotes) -> None:
+    others = system.executors
     waiting, wait = executor.waiting, time_text(longest_wait(executor))
     guards = [handle.name for handle in executor.handles if handle.kind is HandleKind.GUARD_CONDITION]
     if guards and not waiting.guard_conditions_end_wait and longest_wait(executor):
@@ -97,7 +98,7 @@ def _note_waiting(executor: Executor, others: Sequence[Executor], notes: Analysi
         notes.warning("EXE018", message, executor)
     # Where something that is kept back ends each wait, no wait is long while a message is stored.
     is_awaited = messages(executor) and longest_wait(executor) and not busy_polls(executor)
-    if is_awaited and has_backlog(executor, others) and not waiting.stored_data_ends_wait:
+    if is_awaited and has_backlog(executor, system) and not waiting.stored_data_ends_wait:
         message = f"a message for {executor.name!r} that is stored already does not end its wait, which lasts up to {wait}"
         notes.warning("EXE017", message, executor)
     if can_defer(executor) and timers(executor):

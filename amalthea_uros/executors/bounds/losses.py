@@ -28,6 +28,7 @@ from amalthea_uros.executors.semantics.readiness import (
 )
 from amalthea_uros.perf.executors import Executor, Handle
 from amalthea_uros.perf.network import Span
+from amalthea_uros.perf.system import System
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 
@@ -94,8 +95,9 @@ def with_lost_messages(
     stored : the messages of each handle that can wait at the same time
     needed : the slots for those of all executors that share them
     """
-    executor, everyone = cycle.executor, cycle.solved.context.system.executors
-    if executor.waiting.slots != 0 and all(takes_one_message(each, everyone) for each in sharing(executor, everyone)):
+    executor, system = cycle.executor, cycle.solved.context.system
+    sharing_slots = sharing(executor, system.executors)
+    if executor.waiting.slots != 0 and all(takes_one_message(each, system) for each in sharing_slots):
         return list(results)
     return [
         replace(result, lost=_lost(handle, result, cycle, stored[handle.name], needed)) if is_message(handle) else result
@@ -115,10 +117,10 @@ def stored_messages(
     }
 
 
-def slots_of_pool(executors: Sequence[Executor], everyone: Sequence[Executor], stored: Mapping[str, int | None]) -> int | None:
+def slots_of_pool(executors: Sequence[Executor], system: System, stored: Mapping[str, int | None]) -> int | None:
     """The slots that executors need that share them; None if a number of messages is not known, and nothing limits it."""
     handles = [handle for each in executors for handle in messages(each)]
-    if all(takes_one_message(each, everyone) for each in executors):
+    if all(takes_one_message(each, system) for each in executors):
         return min(len(handles), 1)
     return slots_needed(handles, stored)
 

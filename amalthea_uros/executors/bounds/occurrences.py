@@ -18,22 +18,25 @@ equations, as for event models in general (K. Richter 2005), and in docs/proofs/
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import Arriving, acknowledged, asks_again, times_out
 from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.evaluate import handle_result
+from amalthea_uros.executors.bounds.missing import MissingMessages, missing_messages, waits_for_missing
 from amalthea_uros.executors.bounds.publications import sending_times
 from amalthea_uros.executors.bounds.sending_places import sending_places
 from amalthea_uros.executors.bounds.sent_again import sent_again
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
-from amalthea_uros.executors.results import ExecutorOccurrences, HandleResult
+from amalthea_uros.executors.results import ExecutorOccurrences, HandleResult, merged
 from amalthea_uros.executors.semantics.losses import parts, recovers
 from amalthea_uros.executors.semantics.readiness import arrivals, reads_in_waits
 from amalthea_uros.executors.semantics.suspension import acknowledgements
 from amalthea_uros.perf.executors import Handle, HandleKind, Publication
+from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models.models import (
@@ -58,26 +61,65 @@ def least_occurrences(context: TimingContext) -> ExecutorOccurrences:
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessageTimes:
+    """How long messages hold up who sends them, and when they arrive.
+
+    Attributes
+    ----------
+    sending : times from the call of publish to its return, by the names of transmissions
+    missing : what losses lead to, by the names of transmissions
+    jitter : of arrivals, by the names of handles
+    """
+
+    sending: Mapping[str, Span]
+    missing: Mapping[str, MissingMessages | str]
+    jitter: Mapping[str, Time | None]
+
+    @classmethod
+    def merged(cls, times: Iterable[MessageTimes]) -> MessageTimes:
+        """The times of the messages of all controllers."""
+        every = list(times)
+        return cls(
+            sending=merged(each.sending for each in every),
+            missing=merged(each.missing for each in every),
+            jitter=merged(each.jitter for each in every),
+        )
+
+    @property
+    def waits(self) -> dict[str, Time | None]:
+        """How long reliable messages can wait for missing ones, by the names of transmissions; None if that has no bound."""
+        return waits_for_missing(self.missing)
+
+
+def message_times(solved: SolvedSystem) -> MessageTimes:
+    """The times of messages that follow from response times and activations."""
+    sending = sending_times(solved)
+    missing = missing_messages(solved, sending)
+    return MessageTimes(sending=sending, missing=missing, jitter=arrival_jitter(solved, waits_for_missing(missing)))
+
+
 def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
     """The occurrences that follow from response times and activations."""
-    sending, extra_jitter = sending_times(solved), arrival_jitter(solved)
+    times_of_messages = message_times(solved)
+    sending, missing, extra_jitter = times_of_messages.sending, times_of_messages.missing, times_of_messages.jitter
     sent: dict[str, EventModel | None] = {}
     lateness: dict[str, Time | None] = {}
     times: list[Time | None] = []
-    again: dict[str, EventModel | None] = {}
     overrunning: set[str] = set()
+    cycles: list[Cycle | None] = []
     for executor in solved.context.system.executors:
         try:
             cycle = Cycle.of(executor, solved, sending)
         except UnknownError:
+            cycles.append(None)
             lateness[executor.task] = None
             overrunning.add(executor.task)
-            again |= sent_again(solved, None, None, reads_in_waits=True)
             sent |= {each.transmission or "": None for handle in executor.handles for each in _sent_by(handle, solved.context)}
             times += [None] * reads_in_waits(executor)
             continue
         results = [handle_result(handle, cycle, extra_jitter) for handle in executor.handles]
-        again |= sent_again(solved, cycle.greatest_age, cycle.processor, reads_in_waits=reads_in_waits(executor))
+        cycles.append(cycle)
         lateness[executor.task] = _lateness(cycle, results)
         overrunning |= {executor.task} if cycle.can_overrun else set()
         times += [_until_acknowledged(cycle)] * reads_in_waits(executor)
@@ -88,7 +130,26 @@ def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
     late = None if None in times else max(filter(None, times), default=Time(0))
     arriving = acknowledged(solved)
     written = {name: _acknowledging(arriving[name], late) for name in _acknowledgements_of_executors(solved.context)}
+    again = _by_controller(cycles, solved)
+    for name, effect in missing.items():
+        if isinstance(effect, str):
+            again[name] = effect
+        elif effect.again is not None:
+            again[name] = effect.again
     return ExecutorOccurrences(sent=sent | written, lateness=lateness, again=again, overrunning=frozenset(overrunning))
+
+
+def _by_controller(cycles: Sequence[Cycle | None], solved: SolvedSystem) -> dict[str, EventModel | str]:
+    """Messages that the controller sends again; the cycle of any executor bounds the age of the receive backlog."""
+    known = [each for each in cycles if each is not None]
+    ages = [each.greatest_age for each in known] if len(known) == len(cycles) else []
+    processor = known[0].processor if known else None
+    distances = [each.publication_distance for each in known]
+    return sent_again(solved, _least(ages), processor, _least(distances))
+
+
+def _least(times: Sequence[Time | None]) -> Time | None:
+    return min((time for time in times if time is not None), default=None)
 
 
 def _published(publication: Publication, calls: EventModel | None, cycle: Cycle) -> Mapping[str, EventModel | None]:

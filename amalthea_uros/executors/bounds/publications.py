@@ -30,7 +30,7 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import DUE, Arriving, acknowledged, has_unacknowledged, max_heartbeats
 from amalthea_uros.executors.bounds.cycle import Cycle
-from amalthea_uros.executors.bounds.sent_again import most_at_once, time_to_write_again
+from amalthea_uros.executors.bounds.sent_again import most_at_once, time_to_write
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import agent_hop, received, sent, wire_hop
 from amalthea_uros.executors.results import Hop
@@ -69,9 +69,10 @@ def sending_times(solved: SolvedSystem) -> Mapping[str, Span]:
     system = solved.context.system
     arrivals = acknowledged(solved)
     sessions = {each.name: _Session() for each in system.executors}
+    cycles = {each.name: _cycle(each, solved) for each in system.executors}
     for _ in range(_ITERATIONS):
         sending = _times(sessions, arrivals, solved)
-        found = {each.name: _session(each, sending, solved) for each in system.executors}
+        found = {name: _session(cycle, sending, solved) for name, cycle in cycles.items()}
         if found == sessions or not any(each.waits for each in publications(system)):
             return sending
         sessions = found
@@ -95,13 +96,20 @@ def _times(
     }
 
 
-def _session(executor: Executor, sending: Mapping[str, Span], solved: SolvedSystem) -> _Session:
+def _cycle(executor: Executor, solved: SolvedSystem) -> Cycle | None:
+    """The cycle of an executor before it is known how long publications take; None if it has no bound whatever they do."""
+    try:
+        return Cycle.without_sending(executor, solved)
+    except UnknownError:
+        return None
+
+
+def _session(cycle: Cycle | None, sending: Mapping[str, Span], solved: SolvedSystem) -> _Session:
     """What the publications of an executor can meet, if they take such times."""
     unacknowledged = has_unacknowledged(sending, solved)
-    try:
-        cycle = Cycle.of(executor, solved, sending)
-    except UnknownError:
+    if cycle is None:
         return _Session(backlog_age=None, cycle=None, has_unacknowledged=unacknowledged)
+    cycle = cycle.with_sending(sending)
     return _Session(backlog_age=cycle.backlog_age, cycle=cycle.longest, has_unacknowledged=unacknowledged)
 
 
@@ -183,9 +191,9 @@ def _until_timeout(publication: Publication, solved: SolvedSystem) -> Time | Non
     """When a publication times out; None if it does not, or what it writes has no bound."""
     transmissions = solved.context.system.transmissions
     if publication.timeout is not None and (kept := most_at_once(solved)):
-        # It writes its message, heartbeats, and at last sends again what is missing, one after the other.
+        # It writes its message, heartbeats, and at last an answer, or again what is missing, one after the other.
         beats = max_heartbeats(publication.timeout, solved)
-        writing = None if beats is None else time_to_write_again(1 + beats + kept, solved)
+        writing = None if beats is None else time_to_write(publication.attempts + beats + kept, solved)
         return None if writing is None else publication.timeout + writing
     written = _until_written(transmissions.get(publication.transmission or ""), solved).most
     writes = [_until_written(each, solved).most for each in acknowledgements(solved.context.system)]

@@ -27,11 +27,15 @@ from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.backlog import protocol_overhead
 from amalthea_uros.executors.bounds.cycle import Cycle
+from amalthea_uros.executors.bounds.sent_again import repeated
+from amalthea_uros.executors.bounds.sequences import CycleSequence
+from amalthea_uros.executors.bounds.transmissions import received, variation
 from amalthea_uros.executors.semantics.losses import parts
 from amalthea_uros.executors.semantics.readiness import arrivals, certain_rate, messages, sharing
 from amalthea_uros.executors.semantics.suspension import acknowledgements
 from amalthea_uros.perf.executors import Handle
-from amalthea_uros.timing.event_models.models import EventModel, Multiplied, aggregated
+from amalthea_uros.perf.network import Direction
+from amalthea_uros.timing.event_models.models import Delayed, EventModel, Multiplied, aggregated
 from amalthea_uros.units import SECOND, Time
 
 #: A busy period with more messages is considered unbounded: iterations are then hardly faster than messages.
@@ -45,11 +49,13 @@ class Delay:
     Attributes
     ----------
     cycles : None if there is no bound, for the `reason`
+    time : of these cycles
     earlier : by how much it arrives after the first message of the busy period
     is_overload : whether messages arrive faster than iterations can serve them, for certain
     """
 
     cycles: int | None
+    time: Time = 0
     earlier: Time = 0
     reason: str = ""
     is_overload: bool = False
@@ -72,7 +78,16 @@ def competing(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | No
     known = [each.as_events for each in overhead if each is not None]
     if len(known) < len(overhead):
         raise UnknownError("how many acknowledgements and heartbeats arrive is not known")
-    return aggregated((*data, *known))
+    return aggregated((*data, *known, *_without_message(cycle)))
+
+
+def _without_message(cycle: Cycle) -> list[EventModel]:
+    """Items that a wait can read without getting a message: those that are sent again, or wait for a missing one."""
+    again = repeated(Direction.TO_CONTROLLER, cycle.solved)
+    jitters = [variation(list(received(each, cycle.solved))) for each in again]
+    if None in jitters:
+        raise UnknownError("how late a message is that is sent again is not known")
+    return [Delayed(each, max(filter(None, jitters), default=Time(0)) + 1) for each in list(again.values())[:1]]
 
 
 def _parts(handle: Handle, events: EventModel, cycle: Cycle) -> EventModel:
@@ -82,12 +97,12 @@ def _parts(handle: Handle, events: EventModel, cycle: Cycle) -> EventModel:
     return events if count == 1 else Multiplied(events, count)
 
 
-def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[str, Time | None]) -> Delay:
+def delay_of(handle: Handle, cycle: Cycle, cycles: CycleSequence, extra_jitter: Mapping[str, Time | None]) -> Delay:
     """The longest delay of a message until it is ready.
 
     Parameters
     ----------
-    length : of a cycle, with the wait if it does not end for messages that are stored
+    cycles : with the wait if it does not end for messages that are stored
     """
     overload = certain_overload(cycle)
     if overload is not None:
@@ -96,16 +111,16 @@ def delay_of(handle: Handle, cycle: Cycle, length: Time, extra_jitter: Mapping[s
         events = competing(handle, cycle, extra_jitter)
     except UnknownError as error:
         return Delay(cycles=None, reason=str(error))
-    if events.rate * length >= 1:
-        rate, served = _per_second(events.rate), _per_second(Fraction(1, length))
+    if events.rate * cycles.average >= 1:
+        rate, served = _per_second(events.rate), _per_second(1 / cycles.average)
         return Delay(cycles=None, reason=f"{rate} messages/s arrive, and iterations may serve only {served} per second")
     worst, found, count = Time(-1), Delay(cycles=1), 0
     while count < MAX_MESSAGES:
         count += 1
-        arrival = events.delta_min(count)
-        if count * length - arrival > worst:
-            worst, found = count * length - arrival, Delay(cycles=count, earlier=arrival)
-        if events.delta_min(count + 1) > count * length:
+        arrival, time = events.delta_min(count), cycles.time(count)
+        if time - arrival > worst:
+            worst, found = time - arrival, Delay(cycles=count, time=time, earlier=arrival)
+        if events.delta_min(count + 1) > time:
             return found
     return Delay(
         cycles=None, reason=f"more than {MAX_MESSAGES:,} messages can wait: iterations are hardly faster than messages"

@@ -41,7 +41,7 @@ from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.semantics.loops import longest_wait
 from amalthea_uros.executors.semantics.readiness import arrivals, can_defer, messages, sharing
 from amalthea_uros.perf.executors import Handle
-from amalthea_uros.timing.activation.relays import comes_regularly
+from amalthea_uros.timing.activation.relays import arrives_regularly
 from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.units import Time
 
@@ -124,7 +124,7 @@ def storage_of(handle: Handle, cycle: Cycle, extra_jitter: Mapping[str, Time | N
         events = arrivals(handle, extra_jitter)
     except UnknownError:
         return None
-    gaps = () if cycle.loses_messages else tuple(_gaps(cycle, extra_jitter))
+    gaps = tuple(_gaps(cycle, extra_jitter))
     if gaps:
         cycle.solved.context.notes.assume(ASSUMPTION)
     return StorageConditions(
@@ -166,7 +166,7 @@ def _stored(events: EventModel, age: Time, length: Time) -> int | None:
 def _gaps(cycle: Cycle, extra_jitter: Mapping[str, Time | None]) -> Iterator[Time]:
     """The greatest distances of messages that come for certain, by handles."""
     for handle in messages(cycle.executor):
-        if comes_regularly(handle, cycle.solved.context.system):
+        if arrives_regularly(handle, cycle.solved.context.system):
             with suppress(UnknownError):
                 events = arrivals(handle, extra_jitter)
                 yield max(events.period, handle.phase or 0) + events.jitter

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import Hop, HopKind
+from amalthea_uros.executors.semantics.losses import can_be_sent_again
 from amalthea_uros.executors.semantics.readiness import thread_of
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.software import Isr, Task
@@ -20,6 +21,9 @@ from amalthea_uros.units import Time
 
 #: Why an unknown latency of the agent does not make arrivals unknown, if the description states the jitter of messages.
 _STATED_JITTER = "where the latency of the agent is not stated, the stated jitter is that of the messages that enter the wire"
+
+#: Based on what a wait for missing messages is bounded.
+WAIT_SOURCE = "as many attempts to send it again as messages can be lost"
 
 #: The key of a latency of the agent, by what is sent where.
 _AGENT_KEYS = {Direction.TO_CONTROLLER: "to_controller", Direction.TO_AGENT: "to_host"}
@@ -85,7 +89,7 @@ def _only_sender(transmission: Transmission, solved: SolvedSystem) -> str | None
     """
     system = solved.context.system.client_at(transmission.wire)
     wire = next((each for each in system.network.wires if each.name == transmission.wire), None)
-    if wire is None or not wire.keeps_sender or wire.loses_messages or len(wire.cores) < len(Direction):
+    if wire is None or not wire.keeps_sender or len(wire.cores) < len(Direction):
         return None
     sent = {
         each.name: each.purpose
@@ -118,11 +122,17 @@ def process_hop(name: str, solved: SolvedSystem) -> Hop:
     return Hop(kind=kind, name=name, best=best, worst=response.worst, source=f"response time by {response.method}")
 
 
-def wait_for_missing(transmission: Transmission, system: System) -> Hop | None:
-    """The time for which a reliable message waits for one that was lost before it, which has no bound; None if none can be lost."""
-    lossy = any(wire.loses_messages for wire in system.network.wires if wire.name == transmission.wire)
-    if not lossy or all(each.acknowledges != transmission.name for each in system.network.transmissions):
+def wait_for_missing(transmission: Transmission, system: System, waits: Mapping[str, Time | None]) -> Hop | None:
+    """The time for which a reliable message waits for one that was lost before it; None if none can be lost.
+
+    Parameters
+    ----------
+    waits : the bounds that are known, by the names of transmissions
+    """
+    if not can_be_sent_again(transmission, system):
         return None
+    if (longest := waits.get(transmission.name)) is not None:
+        return Hop(kind=HopKind.LINK, name=transmission.wire, best=0, worst=longest, source=WAIT_SOURCE)
     reason = (
         f"messages can be lost on {transmission.wire!r}, and a reliable one waits until those before it have been sent again"
     )
@@ -136,10 +146,14 @@ def variation(hops: Sequence[Hop]) -> Time | None:
     return sum(times) if len(times) == len(hops) else None
 
 
-def arrival_jitter(solved: SolvedSystem) -> Mapping[str, Time | None]:
+def arrival_jitter(solved: SolvedSystem, waits: Mapping[str, Time | None]) -> Mapping[str, Time | None]:
     """How far the arrivals at handles vary, besides the jitter that is stated, by the names of handles; None if a hop has no bound.
 
     Each hop before can take its best or its worst time (K. Richter 2005).
+
+    Parameters
+    ----------
+    waits : for messages that are missing before a reliable one, by the names of transmissions; None if they have no bound
     """
     found: dict[str, Time | None] = {}
     for executor in solved.context.system.executors:
@@ -150,7 +164,8 @@ def arrival_jitter(solved: SolvedSystem) -> Mapping[str, Time | None]:
             agent = agent_hop(transmission, solved)
             # Otherwise, nothing activates what stands for the message on the wire, which has no bound then.
             stated = [] if agent.worst is None else [agent]
-            jitter = found[handle.name] = variation([*stated, *received(transmission, solved)])
+            jitter, wait = variation([*stated, *received(transmission, solved)]), waits.get(transmission.name, Time(0))
+            found[handle.name] = jitter = None if jitter is None or wait is None else jitter + wait
             if agent.worst is None and jitter is not None:
                 solved.context.notes.assume(_STATED_JITTER)
     return found

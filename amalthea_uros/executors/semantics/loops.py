@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from amalthea_uros.executors.semantics.losses import why_unbounded
+from amalthea_uros.executors.semantics.losses import reliable_messages, why_unbounded
 from amalthea_uros.executors.semantics.readiness import (
     can_defer,
     is_message,
@@ -37,6 +37,7 @@ from amalthea_uros.executors.semantics.readiness import (
     timers,
 )
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind
+from amalthea_uros.perf.network import Direction
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.context import TimingContext
@@ -101,8 +102,12 @@ def busy_polls(executor: Executor) -> str:
 
 def timing_context(system: System, settings: Settings | None = None) -> TimingContext:
     """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again."""
-    polling = {executor.task: reason for executor in system.executors if (reason := _busy_thread(executor, system))}
-    return TimingContext.of(system, settings, unknown_demands=polling | _sent_again(system))
+    return TimingContext.of(system, settings, unknown_demands=busy_threads(system) | _sent_again(system))
+
+
+def busy_threads(system: System) -> dict[str, str]:
+    """The tasks of executors whose threads can use all time that is left to them, each with the reason."""
+    return {executor.task: reason for executor in system.executors if (reason := _busy_thread(executor, system))}
 
 
 def _busy_thread(executor: Executor, system: System) -> str:
@@ -113,7 +118,9 @@ def _busy_thread(executor: Executor, system: System) -> str:
 
 def _sent_again(system: System) -> dict[str, str]:
     """The messages on wires that lose reliable ones, each with the reason why nobody knows how often it is sent."""
-    acknowledging = {each.wire for each in system.network.transmissions if each.acknowledges is not None}
+    acknowledging = {
+        wire.name for wire in system.network.wires for each in Direction if reliable_messages(wire.name, each, system)
+    }
     reasons = {
         wire.name: reason
         for wire in system.network.wires

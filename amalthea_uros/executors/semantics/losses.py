@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from amalthea_uros._internal.plural import counted
+from amalthea_uros.executors.semantics.readiness import thread_of
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Losses, Purpose, Transmission, Wire, WireKind
 from amalthea_uros.perf.software import Task
@@ -31,27 +32,34 @@ def is_question(message: Transmission, system: System) -> bool:
     return any(each.transmission == message.name and each.waits and not each.reliable for each in publications(system))
 
 
-def acknowledged_from_controller(wire: str, system: System) -> list[Transmission]:
-    """The messages from the controller on a wire that the agent acknowledges."""
-    return [each for each in _data(wire, Direction.TO_AGENT, system) if _acknowledgement(each, system) is not None]
+def reliable_messages(wire: str, direction: Direction, system: System) -> list[Transmission]:
+    """The messages in a direction of a wire that are sent again until they are acknowledged."""
+    return [
+        each for each in _data(wire, direction, system) if answer_to(each, system) is not None and not is_question(each, system)
+    ]
+
+
+def can_be_sent_again(message: Transmission, system: System) -> bool:
+    """Whether a message is reliable, on a wire that loses messages."""
+    lossy = {wire.name for wire in system.network.wires if wire.loses_messages}
+    return message.wire in lossy and message in reliable_messages(message.wire, message.direction, system)
 
 
 def recovers(publication: Publication, system: System) -> bool:
     """Whether a publication waits on a wire that loses messages, and what losses lead to has a bound."""
     message = system.transmissions.get(publication.transmission or "")
     wires = (each for each in system.network.wires if message is not None and each.name == message.wire)
-    return publication.waits and any(wire.losses and not why_unbounded(wire, system) for wire in wires)
+    return publication.waits and publication.reliable and any(wire.losses and not why_unbounded(wire, system) for wire in wires)
 
 
 def why_unbounded(wire: Wire, system: System) -> str:
     """Why what is sent again on a wire with losses has no bound; "" if it has one.
 
     The bound is for a client with one thread, all of whose reliable messages are publications that wait, in one part, on a wire that
-    keeps their order. Reliable messages to the controller have none: later ones wait for a missing one, whose recovery can be long.
+    keeps their order. Of reliable messages to the controller, `bounds.missing` has further conditions.
     """
-    sent = acknowledged_from_controller(wire.name, system)
+    sent, received = (reliable_messages(wire.name, each, system) for each in (Direction.TO_AGENT, Direction.TO_CONTROLLER))
     published = {each.transmission: each for each in publications(system)}
-    received = _data(wire.name, Direction.TO_CONTROLLER, system)
     if not wire.losses:
         return "how many are lost is not stated; state it, e.g. 'losses: 1 per 10 s'"
     if any(not losses.window for losses in wire.losses):
@@ -66,19 +74,16 @@ def why_unbounded(wire: Wire, system: System) -> str:
         return "it is not known how many messages are sent again at once"
     if wire.kind in (WireKind.CAN, WireKind.CAN_FD):
         return "messages with other identifiers overtake those that are sent again"
-    if any(_acknowledgement(each, system) is not None for each in received):
-        return "a reliable message to the controller can wait for a missing one before it"
-    if len(system.executors) != 1 or _has_threads(wire, system):
+    executors = system.executors
+    if not executors or len(thread_of(executors[0], executors)) < len(executors) or _has_threads(wire, system):
         return "several threads use the session"
     if any(each.name not in published for each in _data(wire.name, Direction.TO_AGENT, system)):
         return "more than one thread sends messages, or not each of them is a publication of an executor"
     if any(not published[each.name].waits for each in sent):
         return "not each reliable message is a publication that waits"
-    if any(each.waits and not each.reliable for each in published.values()):
-        return "a ping or a time synchronisation waits for an answer that is not sent again"
     if any(publication.timeout is None for publication in published.values() if publication.waits):
         return "a publication waits without a timeout"
-    if any(parts(reply, system) > 1 for each in sent if (reply := _acknowledgement(each, system)) is not None):
+    if any(parts(reply, system) > 1 for each in (*sent, *received) if (reply := answer_to(each, system)) is not None):
         return "a message is sent in several parts"
     return ""
 
@@ -88,7 +93,8 @@ def _data(wire: str, direction: Direction, system: System) -> list[Transmission]
     return [each for each in system.network.transmissions if (each.wire, each.direction, each.purpose) == wanted]
 
 
-def _acknowledgement(message: Transmission, system: System) -> Transmission | None:
+def answer_to(message: Transmission, system: System) -> Transmission | None:
+    """What acknowledges or answers a message; None if nothing does."""
     return next((each for each in system.network.transmissions if each.acknowledges == message.name), None)
 
 

@@ -16,7 +16,7 @@ from fractions import Fraction
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, TriggerKind
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.relays import comes_regularly
+from amalthea_uros.timing.activation.relays import arrives_regularly
 from amalthea_uros.timing.event_models.models import PeriodicEvents, SporadicEvents
 from amalthea_uros.units import SECOND, Time
 
@@ -39,13 +39,14 @@ def messages(executor: Executor) -> tuple[Handle, ...]:
     return tuple(handle for handle in executor.handles if is_message(handle))
 
 
-def takes_one_message(executor: Executor, executors: Sequence[Executor]) -> bool:
+def takes_one_message(executor: Executor, system: System) -> bool:
     """Whether at most one of the handles that receive messages is ready in an iteration.
 
     A wait takes one message, and it is called in the same iteration. Nothing is stored for later if no publication waits for an
-    acknowledgement, the trigger defers nothing, and no other executor receives from the same buffer.
+    acknowledgement, the trigger defers nothing, no other executor receives from the same buffer, and no message waits for a missing
+    one before it.
     """
-    return executor.waiting.messages_per_wait == 1 and not has_backlog(executor, executors)
+    return executor.waiting.messages_per_wait == 1 and not has_backlog(executor, system)
 
 
 def reads_in_waits(executor: Executor) -> bool:
@@ -53,11 +54,18 @@ def reads_in_waits(executor: Executor) -> bool:
     return bool(messages(executor)) or not executor.waiting.polls_without_messages
 
 
-def has_backlog(executor: Executor, executors: Sequence[Executor]) -> bool:
+def has_backlog(executor: Executor, system: System) -> bool:
     """Whether messages can be stored before an iteration that takes them: see `takes_one_message`."""
-    others = [each for each in sharing(executor, executors) if each.name != executor.name]
+    others = [each for each in sharing(executor, system.executors) if each.name != executor.name]
     can_store = map(waits_for_acknowledgements, (executor, *others))
-    return can_defer(executor) or any(can_store) or any(map(reads_in_waits, others))
+    return can_defer(executor) or any(can_store) or any(map(reads_in_waits, others)) or _waits_for_missing(executor, system)
+
+
+def _waits_for_missing(executor: Executor, system: System) -> bool:
+    """Whether a message of an executor can wait for a missing one before it, and then be handed over together with others."""
+    lossy = {wire.name for wire in system.network.wires if wire.loses_messages}
+    reliable = {handle.transmission for handle in executor.handles if handle.reliable}
+    return any(each.name in reliable and each.wire in lossy for each in system.network.transmissions)
 
 
 def waits_for_acknowledgements(executor: Executor) -> bool:
@@ -107,13 +115,9 @@ def others_of_thread(executor: Executor, executors: Sequence[Executor]) -> list[
     return [each for each in thread_of(executor, executors) if each.name != executor.name]
 
 
-def independent_handles(executor: Executor) -> tuple[Handle, ...]:
-    """The handles that can be ready besides a message that excludes others; an action server also has a timer."""
-    return tuple(
-        handle
-        for handle in executor.handles
-        if handle.always or not is_message(handle) or handle.kind is HandleKind.ACTION_SERVER
-    )
+def is_independent(handle: Handle) -> bool:
+    """Whether a handle can be ready besides a message that excludes others; an action server also has a timer."""
+    return handle.always or not is_message(handle) or handle.kind is HandleKind.ACTION_SERVER
 
 
 def can_exceed_depth(handle: Handle, stored: int) -> bool:
@@ -159,5 +163,5 @@ def arrivals(handle: Handle, extra_jitter: Mapping[str, Time | None]) -> Periodi
 
 def certain_rate(executor: Executor, system: System) -> Fraction:
     """How many messages per time arrive at an executor for certain: those that come regularly."""
-    periods = (handle.interval for handle in messages(executor) if comes_regularly(handle, system))
+    periods = (handle.interval for handle in messages(executor) if arrives_regularly(handle, system))
     return sum((Fraction(1, period) for period in periods if period), Fraction(0))

@@ -222,6 +222,11 @@ def _communicate(m: Memory, core: int, process: int, at: int) -> int:
             m[process + AT] = at
             return outcome - HAS_TO_WAIT + CONTINUE + 1
         following = second if outcome == IS_DONE else following
+    elif operation == TRY_AGAIN:
+        if m[first + IS_ANSWERED]:
+            following = second
+        else:
+            m[first + TIMEOUTS] -= 1
     elif operation == REPLY or operation == WRITE:
         is_reply = operation == REPLY
         if is_reply and not has_to_write(m, first):

@@ -307,6 +307,7 @@ CALL_NEXT = (
 )
 HOST_PUBLISH = 64  # publishes on the host with (a publication)
 HAVE_CALLED = 65  # (a thread) has called: its group is free
+TRY_AGAIN = 66  # if (a publication) is answered, goes to (an operation); otherwise, it has not timed out yet
 ENTER = 70  # (a stage) reads at the start of the job, into its snapshot; if (1), also into its value
 TAKE = 71  # (a stage) takes what is there now, or, if (1), what was there at the start
 REACH = 72  # a position of (a stage) is reached: (a bit)

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from amalthea_uros.simulate.program.body import Body
 
 #: An assumption.
-_ONE_ATTEMPT = "a ping of several attempts is sent once, and its reply awaited for the time of all of them"
 _OVERHEAD = "the overhead of an iteration of an executor is executed after its wait"
 
 
@@ -123,8 +122,9 @@ class ExecutorRecords:
         key = (executor, handle.name, publication.topic)
         if key not in self._publications:
             is_question = publication.waits and not publication.reliable
+            timeout = layout.NEVER if publication.timeout is None else publication.timeout // publication.attempts
             fields = {
-                layout.TIMEOUT_AFTER: self.resources.time(layout.NEVER if publication.timeout is None else publication.timeout),
+                layout.TIMEOUT_AFTER: self.resources.time(timeout),
                 layout.ANSWERED_BY: self.messages.transmissions[publication.acknowledgement or ""] if is_question else 0,
             }
             self._publications[key] = self.resources.image.record(layout.PUBLICATION_SIZE, fields)
@@ -326,12 +326,15 @@ class IterationCompiler:
         handle, publication = published
         code, record = self.body.code, self.records.publication(self.executor.name, handle, publication)
         self._lock()
-        code.add(layout.WRITE, self.records.messages.transmissions[transmission], record)
-        if publication.attempts > 1:
-            self.records.resources.context.notes.assume(_ONE_ATTEMPT)
-        if publication.waits:
-            code.add(layout.EXPECT, self.record, record)
-            self._read()
+        answered = JumpLabel()
+        for attempt in range(publication.attempts):
+            if attempt:
+                code.add(layout.TRY_AGAIN, record, answered)
+            code.add(layout.WRITE, self.records.messages.transmissions[transmission], record)
+            if publication.waits:
+                code.add(layout.EXPECT, self.record, record)
+                self._read()
+        code.mark(answered)
         self._unlock()
 
     def _publications(self, transmission: str) -> Iterator[tuple[Handle, Publication]]:

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from amalthea_uros.errors import UnknownError
+from amalthea_uros.executors.semantics.losses import can_be_sent_again
 from amalthea_uros.perf.activities import Activity, Trigger
-from amalthea_uros.perf.network import Purpose
 from amalthea_uros.perf.software import Process
 from amalthea_uros.simulate.kernel import layout
 from amalthea_uros.simulate.kernel.message_records import MOST_PARTS
@@ -73,11 +73,8 @@ def _check_recovery(process: Process, body: Body) -> None:
     """Refuse a reliable message that can be lost, and of which nobody who is simulated cares for its repetition."""
     system = body.context.system
     transmission = system.transmissions[process.name]
-    wire = next(each for each in system.network.wires if each.name == transmission.wire)
-    is_reliable = transmission.purpose is Purpose.DATA and any(
-        each.acknowledges == process.name for each in system.transmissions.values()
-    )
-    if is_reliable and wire.losses:
+    has_losses = any(wire.losses for wire in system.network.wires if wire.name == transmission.wire)
+    if has_losses and can_be_sent_again(transmission, system):
         raise UnknownError("it can be lost, and no executor with a loop that is simulated sends or receives it again")
 
 

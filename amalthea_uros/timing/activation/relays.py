@@ -39,3 +39,11 @@ def comes_regularly(handle: Handle, system: System) -> bool:
     # Callbacks of the host can skip periods and lose messages.
     is_of_host = any(plain_topic(transmission.topic) in callback.publishes for callback in system.host.callbacks)
     return handle.is_periodic and not is_of_host and not relayed(transmission, system)
+
+
+def arrives_regularly(handle: Handle, system: System) -> bool:
+    """Whether a message of a handle arrives for certain in each interval: it comes regularly, and is not gone if it is lost."""
+    transmission = system.transmissions.get(handle.transmission or "")
+    lossy = {wire.name for wire in system.network.wires if wire.loses_messages}
+    can_be_lost = transmission is not None and transmission.wire in lossy and not handle.reliable
+    return comes_regularly(handle, system) and not can_be_lost

@@ -17,6 +17,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.executors.bounds.backlog import Arriving, max_backlog
 from amalthea_uros.executors.bounds.cycle import Cycle
 from amalthea_uros.executors.bounds.publications import sending_times
+from amalthea_uros.executors.bounds.sequences import CycleSequence
 from amalthea_uros.executors.bounds.transmissions import arrival_jitter
 from amalthea_uros.executors.results import HopKind
 from amalthea_uros.executors.semantics.loops import timing_context
@@ -152,15 +153,15 @@ def test_data_that_a_callback_for_messages_reads_have_no_bound_if_these_are_irre
 def test_arrivals_vary_by_what_varies_before_them():
     # The agent by 1 ms, the wire by one acknowledgement.
     found = board()
-    assert arrival_jitter(solution(found)) == {"cmd": MS + ACK * US}
+    assert arrival_jitter(solution(found), {}) == {"cmd": MS + ACK * US}
     unknown, *others = found.network.transmissions
     found = with_transmissions(found, replace(unknown, agent=Span(least=MS)), *others)
-    assert arrival_jitter(solution(found)) == {"cmd": ACK * US}
+    assert arrival_jitter(solution(found), {}) == {"cmd": ACK * US}
 
 
 def test_arrivals_are_unknown_if_the_wire_is():
     # Nobody knows when acknowledgements come, which /cmd waits for on the wire.
-    assert arrival_jitter(solution(board(agent=Span(least=MS)))) == {"cmd": None}
+    assert arrival_jitter(solution(board(agent=Span(least=MS))), {}) == {"cmd": None}
 
 
 def test_a_callback_that_does_not_publish_the_topic_is_not_on_its_path():
@@ -270,7 +271,12 @@ def test_another_sender_on_the_wire_is_waited_for():
     ],
 )
 def test_messages_that_come_late_lie_unread_together(parts, unread):
-    assert max_backlog([Arriving(events=SporadicEvents(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS, 6 * MS) == unread
+    assert (
+        max_backlog(
+            [Arriving(events=SporadicEvents(10 * MS), jitter=40 * MS, parts=parts)], 6 * MS, CycleSequence(6 * MS, 6 * MS)
+        )
+        == unread
+    )
 
 
 def with_answers(found, interval, write):

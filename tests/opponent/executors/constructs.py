@@ -69,7 +69,7 @@ def _of_messages(content: Section) -> Iterator[str]:
 
 def _of_wire(content: Section) -> Iterator[str]:
     middleware = content["middleware"]
-    ((name, wire),) = middleware["transport"].items()
+    ((name, wire),) = ((key, value) for key, value in middleware["transport"].items() if key != "losses")
     yield f"wire: {name}"
     if "interrupt" in wire:
         yield "interrupt of the wire"
@@ -80,7 +80,9 @@ def _of_wire(content: Section) -> Iterator[str]:
             yield f"driver: {direction} {wire['driver'][direction]}"
     if "buffer" in wire.get("driver", {}):
         yield "driver: buffer"
-    if "limits" in middleware:
+    if "losses" in middleware["transport"]:
+        yield "messages are lost"
+    if "RMW_UXRCE_MAX_HISTORY" in middleware.get("limits", {}):
         yield "few slots"
     if len(middleware["agent"]) < 3:
         yield "agent: not all times stated"

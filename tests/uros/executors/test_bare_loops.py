@@ -7,6 +7,7 @@ from amalthea_uros.simulate.options import Options
 from amalthea_uros.simulate.options import SimulationMode as Mode
 from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.units import MILLISECOND, SECOND, Duration
+from amalthea_uros.uros.described import describe_text
 
 APP = """
 amuros: 1
@@ -119,3 +120,22 @@ def test_a_message_that_comes_back_does_not_end_waits_for_certain(author):
         return handle.response.worst
 
     assert rare("other") < 100 * MILLISECOND < rare("v")
+
+
+def test_a_loop_that_never_sleeps_loads_its_core_fully_and_starves_what_is_below():
+    """With timers only its waits return at once; what is above it is not affected."""
+    text = """
+amuros: 1
+name: busy
+hardware: {platform: single-core, frequency: 100 MHz}
+middleware:
+  executor: {name: main, priority: 5, loop: {spin_some: 10 ms}, execution_time: {base: 50 us}}
+application: {nodes: [{name: n, timers: [{name: t, period: 250 ms, execution_time: 1 ms}]}]}
+tasks:
+  - {name: Above, priority: 9, period: 10 ms, execution_time: 1 ms}
+  - {name: Below, priority: 1, period: 10 ms, execution_time: 1 ms}
+"""
+    analysis = analyze_system(describe_text(text).assembly.system)
+    assert analysis.processors["Core_0"].worst == 1
+    assert analysis.processes["Above"].response.worst == MILLISECOND
+    assert analysis.processes["Below"].response is None
