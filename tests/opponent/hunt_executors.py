@@ -8,7 +8,8 @@
 - bounds: a random description with every construct, analysed, and simulated with the least and the greatest of everything and with
   two seeds: no observed value is beyond a bound, nothing is lost that cannot be, and no limit is missed that is met;
 - items: the same of a description in which the thread of a loop does more than spin;
-- losses: the same of a description whose wire loses a stated number of messages.
+- losses: the same of a description whose wire loses a stated number of messages;
+- robots: the same of several controllers, which send each other messages, with a host.
 
 `--only calls` and `--only bounds` leave the other one out. It prints each kind of failure with its seed, and writes the smallest
 description of each to the folder. At the end it prints a table: for each construct the number of observed maxima of applications with
@@ -31,13 +32,19 @@ from opponent.executors.claims import false_claims, runs_of
 from opponent.executors.descriptions import random_description
 from opponent.executors.loop_items import description_with_items
 from opponent.executors.lossy import description_with_losses
+from opponent.executors.robots import random_robot
 from opponent.executors.shrinking import kind_of, shrunk
 from opponent.executors.tally import Tally
 
 from amalthea_uros.units import SECOND
 
 #: How the descriptions of each kind of hunt are drawn.
-DESCRIPTIONS = {"bounds": random_description, "items": description_with_items, "losses": description_with_losses}
+DESCRIPTIONS = {
+    "bounds": random_description,
+    "items": description_with_items,
+    "losses": description_with_losses,
+    "robots": random_robot,
+}
 #: The runs of those that need others.
 RUNS = {"losses": runs_of(2 * SECOND, (1,))}
 

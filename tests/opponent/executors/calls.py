@@ -9,7 +9,7 @@ from opponent.executors.tally import Tally
 from played_executors import Spans, play
 from whole_player import Player, S
 
-from amalthea_uros.perf.executors import LoopKind
+from amalthea_uros.perf.executors import Executor, LoopKind
 from amalthea_uros.perf.system import System
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.uros.described import describe_content
@@ -55,13 +55,18 @@ def _of_executors(seed: int, tally: Tally) -> list[str]:
 
 
 def _apart(system: System) -> System:
-    executors = [
-        replace(each, loop=replace(each.loop, sleep=each.loop.sleep + _APART * number, pace=each.loop.pace + _APART * number))
-        if number and each.loop.kind is LoopKind.SLEEPING and each.loop.sleep and each.place is None
-        else each
-        for number, each in enumerate(system.executors)
-    ]
+    executors = [_longer(each, _APART * number) if number else each for number, each in enumerate(system.executors)]
     return replace(system, executors=tuple(executors))
+
+
+def _longer(executor: Executor, time: int) -> Executor:
+    """An executor that sleeps longer, if it sleeps, also where its thread has others."""
+    loop, place = executor.loop, executor.place
+    if loop.kind is not LoopKind.SLEEPING or not loop.sleep:
+        return executor
+    if place is None:
+        return replace(executor, loop=replace(loop, sleep=loop.sleep + time, pace=loop.pace + time))
+    return replace(executor, place=replace(place, sleep=place.sleep + time)) if place.sleep else executor
 
 
 def _of_application(seed: int, tally: Tally) -> list[str]:

@@ -8,8 +8,9 @@ from opponent.executors.descriptions import Section
 
 
 def constructs_of(content: Section) -> frozenset[str]:
-    """The names of the constructs of a description."""
-    return frozenset(name for part in (_of_loops, _of_messages, _of_wire, _of_processes) for name in part(content))
+    """The names of the constructs of a description, or of all controllers of a robot."""
+    kinds = (_of_loops, _of_messages, _of_wire, _of_processes)
+    return frozenset(name for each in content.get("controllers", [content]) for kind in kinds for name in kind(each))
 
 
 def _of_loops(content: Section) -> Iterator[str]:
