@@ -134,8 +134,8 @@ class System:
     @cached_property
     def triggered(self) -> tuple[tuple[str, ...], ...]:
         """The stimuli that each process and each runnable triggers, in order; without those that trigger none."""
-        found = (tuple(each.stimulus for each in walk(body) if isinstance(each, Trigger)) for body in self.software.bodies)
-        return tuple(filter(None, found))
+        stimuli = (tuple(each.stimulus for each in walk(body) if isinstance(each, Trigger)) for body in self.software.bodies)
+        return tuple(filter(None, stimuli))
 
     @cached_property
     def labels(self) -> Mapping[str, Label]:

@@ -46,13 +46,13 @@ def with_demands(system: System, members: ChainMembers, description: Description
 
 
 def _requirements(
-    sections: Iterable[spec.RequirementSection], elements: AbstractMapping[str, ChainElement], notes: Notes
+    sections: Iterable[spec.RequirementSection], elements: AbstractMapping[str, ChainElement], problems: Notes
 ) -> Iterator[Requirement]:
     """The requirements of the description, one for each limit."""
     for section in sections:
         element = elements.get(section.process)
         if element is None:
-            notes.undefined("process or runnable", section.process, elements, section.location("process"))
+            problems.undefined("process or runnable", section.process, elements, section.location("process"))
             continue
         yield from _limits(section, element)
 

@@ -1,4 +1,4 @@
-"""What contradicts itself in a host, and what is probably not described as meant."""
+"""Contradictions in the description of a host, and parts of it that are probably not meant so."""
 
 from __future__ import annotations
 

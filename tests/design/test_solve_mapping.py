@@ -123,9 +123,10 @@ def test_tasks_that_share_time_in_slices_are_left_to_others():
     # Without one of them, the slices of the others come at other times, which can be later ones.
     problem = mapping_problem(TASKS, ["one", "two"])
     system = problem.present.system
+    mapping = replace(system.mapping, tasks=tuple(replace(each, priority=1) for each in system.mapping.tasks))
     (os,) = system.os.systems
     schedulers = tuple(replace(each, policy=Policy.PRIORITY_BASED_ROUND_ROBIN) for each in os.schedulers)
-    slices = replace(system, os=replace(system.os, systems=(replace(os, schedulers=schedulers),)))
+    slices = replace(system, mapping=mapping, os=replace(system.os, systems=(replace(os, schedulers=schedulers),)))
     assert solve_mapping(replace(problem, present=problem.present._replace(system=slices))) is None
 
 

@@ -15,7 +15,12 @@ from amalthea_uros.services.measure import measure
 from amalthea_uros.spec.read import read_description
 from amalthea_uros.units import MICROSECOND as US
 
-SAMPLES = [path for path in sorted((ROOT / "samples").glob("*.yaml")) if describe(path).system.executors]
+#: Code is that of one controller.
+SAMPLES = [
+    path
+    for path in sorted((ROOT / "samples").glob("*.yaml"))
+    if describe(path).system.executors and path.stem != "robot-two-controllers"
+]
 APP = """
 amuros: 1
 name: app

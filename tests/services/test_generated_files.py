@@ -19,7 +19,9 @@ from amalthea_uros.services.report import compile_report
 from amalthea_uros.uros.generated_files import texts_of
 
 #: zenoh-pico has no pools.
-SAMPLES = [ROOT / "samples" / f"{name}.yaml" for name in example_names() if name != "robot-zenoh"]
+SAMPLES = [
+    ROOT / "samples" / f"{name}.yaml" for name in example_names() if name not in ("robot-zenoh", "robot-two-controllers")
+]
 RCLC = ROOT / "samples" / "rclc-in-executor.yaml"
 #: Everything that an application can have, with settings that the figures depend on.
 FULL = """

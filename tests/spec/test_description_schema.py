@@ -113,7 +113,8 @@ def test_what_the_reader_refuses_in_a_task_the_schema_refuses(key, value):
     assert not schema_accepts(content)
 
 
-PARTS = [value for sample in SAMPLES for value in (copy.deepcopy(sample["application"]), *sample.get("tasks", ()))]
+CONTROLLERS = [controller for sample in SAMPLES for controller in sample.get("controllers", [sample])]
+PARTS = [value for each in CONTROLLERS for value in (copy.deepcopy(each["application"]), *each.get("tasks", ()))]
 
 
 @given(st.data())

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import chain
 
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.records import dataclass, field, replace
@@ -29,7 +28,7 @@ from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.bounds.evaluate import evaluate_executors
-from amalthea_uros.executors.bounds.occurrences import MessageTimes, message_times
+from amalthea_uros.executors.bounds.occurrences import MessageTimes
 from amalthea_uros.executors.bounds.transmissions import (
     agent_hop,
     process_hop,
@@ -65,10 +64,10 @@ def evaluate_executors_and_messages(
     ----------
     solution : for unknown phases, in which any job can take what comes from outside
     """
-    by_client = [(client, message_times(client)) for client in solution.clients]
-    results = (evaluate_executors(each, sending=own.sending, extra_jitter=own.jitter) for each, own in by_client)
-    executors, host = Results(chain.from_iterable(results)), evaluate_host(solution)
-    times, system = MessageTimes.merged(own for _, own in by_client), solution.context.system
+    times = MessageTimes.merged(map(MessageTimes.of, solution.clients))
+    results = (evaluate_executors(each, sending=times.sending, extra_jitter=times.jitter) for each in solution.clients)
+    executors = Results(result for each in results for result in each)
+    host, system = evaluate_host(solution), solution.context.system
     evaluator = MessageChains(
         ChainEvaluator(solution),
         CallbackHops(executors, times.jitter, system),

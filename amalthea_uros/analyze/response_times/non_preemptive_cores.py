@@ -23,15 +23,15 @@ SOURCE = "Nasri, Nelissen, Brandenburg 2018"
 def response_times(streams: Sequence[JobStream], cores: int) -> Iterator[Response]:
     """The response times of tasks, the most important one first; none has one if a job may not end before the next activation."""
     load = sum(Fraction(sum(worst for _, worst in each.demands[each.lead :]), each.cycle * each.period) for each in streams)
-    found = explored(streams, cores) if load <= cores else None
-    if found is None:
+    completions = explored(streams, cores) if load <= cores else None
+    if completions is None:
         reason = f"the schedules of its tasks on {cores} cores are too many to explore all of them"
         if load > cores:
             reason = f"the jobs of its tasks need up to {percent_text(load / cores, 1)} % of its {cores} cores"
-    elif any(ends.latest > stream.period for ends, stream in zip(found, streams, strict=True)):
+    elif any(ends.latest > stream.period for ends, stream in zip(completions, streams, strict=True)):
         reason = f"a task on its {cores} cores need not end before its next activation, and is never preempted"
     else:
-        yield from (_response(stream, ends) for stream, ends in zip(streams, found, strict=True))
+        yield from (_response(stream, ends) for stream, ends in zip(streams, completions, strict=True))
         return
     for stream in streams:
         shortest = min(best for best, _ in stream.demands)

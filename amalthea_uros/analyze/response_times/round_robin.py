@@ -61,10 +61,10 @@ def in_slices(task: AnalysedTask, others: Sequence[AnalysedTask], higher: Interf
     if higher.tasks:
         reason = "what precedes it may take a part of its time slices"
         return Response(worst=None, best=task.demand.best, method=SLICES, source=SOURCE, reason=reason)
-    found = response_time(task, [_with_all_slices(other) for other in others], higher, blocking)
-    if found.worst is None:
-        found = replace(found, is_overload=False, reason="the time slices of the others leave it too little time")
-    return replace(found, method=SLICES)
+    response = response_time(task, [_with_all_slices(other) for other in others], higher, blocking)
+    if response.worst is None:
+        response = replace(response, is_overload=False, reason="the time slices of the others leave it too little time")
+    return replace(response, method=SLICES)
 
 
 def _with_all_slices(task: AnalysedTask) -> AnalysedTask:

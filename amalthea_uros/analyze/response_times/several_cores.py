@@ -107,10 +107,10 @@ def responses_on_several_cores(context: TimingContext) -> dict[str, MigratingRes
             continue
         cores, time_base = len(set(scheduler.cores)), context.demand_model.time_base(scheduler.cores[0])
         streams = [task.jobs for task in tasks if task.jobs is not None]
-        found = non_preemptive_cores.response_times(streams, cores) if streams else response_times(tasks, cores)
+        responses = non_preemptive_cores.response_times(streams, cores) if streams else response_times(tasks, cores)
         for assumption in (RELEASES, CONSTANT_TIMES) if streams else (ASSUMPTION,) if tasks else ():
             context.notes.assume(assumption)
-        for task, response in zip(tasks, found, strict=True):
+        for task, response in zip(tasks, responses, strict=True):
             results[task.name] = MigratingResult(in_picoseconds(response, time_base), task.demand, task.events, time_base)
     return results
 

@@ -17,7 +17,7 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.uros.assemble import Assembly
 
-#: What offered values may be of, if it is no system.
+#: The sources that offered values may be of, besides a system.
 Source: TypeAlias = DescriptionOrigin | ModelOrigin
 #: Each structure is built before the search begins.
 MOST_STRUCTURES = 500

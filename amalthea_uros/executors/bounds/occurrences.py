@@ -77,6 +77,13 @@ class MessageTimes:
     jitter: Mapping[str, Time | None]
 
     @classmethod
+    def of(cls, solved: SolvedSystem) -> MessageTimes:
+        """The times of messages that follow from response times and activations."""
+        sending = sending_times(solved)
+        missing = missing_messages(solved, sending)
+        return cls(sending=sending, missing=missing, jitter=arrival_jitter(solved, waits_for_missing(missing)))
+
+    @classmethod
     def merged(cls, times: Iterable[MessageTimes]) -> MessageTimes:
         """The times of the messages of all controllers."""
         every = list(times)
@@ -92,16 +99,9 @@ class MessageTimes:
         return waits_for_missing(self.missing)
 
 
-def message_times(solved: SolvedSystem) -> MessageTimes:
-    """The times of messages that follow from response times and activations."""
-    sending = sending_times(solved)
-    missing = missing_messages(solved, sending)
-    return MessageTimes(sending=sending, missing=missing, jitter=arrival_jitter(solved, waits_for_missing(missing)))
-
-
 def occurrences(solved: SolvedSystem) -> ExecutorOccurrences:
     """The occurrences that follow from response times and activations."""
-    times_of_messages = message_times(solved)
+    times_of_messages = MessageTimes.of(solved)
     sending, missing, extra_jitter = times_of_messages.sending, times_of_messages.missing, times_of_messages.jitter
     sent: dict[str, EventModel | None] = {}
     lateness: dict[str, Time | None] = {}

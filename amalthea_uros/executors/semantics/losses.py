@@ -94,7 +94,7 @@ def _data(wire: str, direction: Direction, system: System) -> list[Transmission]
 
 
 def answer_to(message: Transmission, system: System) -> Transmission | None:
-    """What acknowledges or answers a message; None if nothing does."""
+    """The message that acknowledges or answers another one; None if nothing does."""
     return next((each for each in system.network.transmissions if each.acknowledges == message.name), None)
 
 

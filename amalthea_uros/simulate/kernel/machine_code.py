@@ -111,7 +111,7 @@ def _numbers_of(memory: Memory) -> Memory:
 
 
 def _address() -> Any:
-    """What gives machine code the numbers of an array by their address.
+    """The function that gives machine code the numbers of an array by their address.
 
     An array is seven arguments in each call, and each use of it looks whether a place counts from the end, which none does: with the
     address alone the kernel takes a quarter of the time.

@@ -326,15 +326,15 @@ class IterationCompiler:
         handle, publication = published
         code, record = self.body.code, self.records.publication(self.executor.name, handle, publication)
         self._lock()
-        answered = JumpLabel()
+        acknowledged_label = JumpLabel()
         for attempt in range(publication.attempts):
             if attempt:
-                code.add(layout.TRY_AGAIN, record, answered)
+                code.add(layout.TRY_AGAIN, record, acknowledged_label)
             code.add(layout.WRITE, self.records.messages.transmissions[transmission], record)
             if publication.waits:
                 code.add(layout.EXPECT, self.record, record)
                 self._read()
-        code.mark(answered)
+        code.mark(acknowledged_label)
         self._unlock()
 
     def _publications(self, transmission: str) -> Iterator[tuple[Handle, Publication]]:

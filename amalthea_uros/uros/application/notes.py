@@ -61,7 +61,7 @@ class Notes:
         self.error("APP001", f"undefined {kind} {name!r}{scope}", location, self.suggestion(kind, name, defined))
 
     def suggestion(self, kind: str, name: str, defined: Iterable[str]) -> str:
-        """What to do about a name that is not defined."""
+        """The advice about a name that is not defined."""
         if self._suggestions.comparisons <= 0:
             return "Define it, or correct the name."
         known = sorted(set(defined))
