@@ -42,7 +42,7 @@ LINES = {
     "platforms": 0,
     "report": 8668,
     "services": 2640,
-    "simulate": 8640,
+    "simulate": 8643,
     "source": 3550,
     "spec": 3014,
     "timing": 5711,

@@ -172,6 +172,10 @@ def test_without_a_latency_of_the_topic_nothing_is_known_of_what_arrives():
     assert result.chains["wheels-to-joint"].worst is None
     assert "the latency of the topic 'odom' is not specified" in result.chains["wheels-to-joint"].reason
     assert all(each.response.worst is None for each in result.executors["arm_Spin"].handles)
+    simulation = amuros.simulate(text, "1 s")
+    reasons = {each.name: each.reason for each in simulation.left_out}
+    assert "how long messages of 'odom' take from 'base_Report'" in reasons["arm_Spin"]
+    assert not simulation.chains["wheels-to-joint"].quantities
 
 
 def test_what_the_other_controller_sends_counts_instead_of_what_is_stated():

@@ -267,6 +267,9 @@ class MessageRecords:
             return f"{left_out[0]!r}, which {name!r} passes, is not simulated"
         if None in (transmission.link.most, transmission.driver.most if is_received else 0):
             return f"it is not specified how long {name!r} takes besides the wire"
+        for sent in relayed(transmission, self.system):
+            if None in (sent.agent.simulated.most, *(each.simulated.most for each in self._on_its_way(sent, transmission))):
+                return f"it is not specified how long messages of {transmission.topic!r} take from {sent.callback!r}"
         return ""
 
     def _acknowledge(self, transmission: Transmission) -> None:
