@@ -4,6 +4,7 @@ import pytest
 from support import ROOT
 
 from amalthea_uros import simulate
+from amalthea_uros.simulate.kernel import machine_code
 from amalthea_uros.simulate.runs import driver
 
 
@@ -25,6 +26,7 @@ class Guarded:
 @pytest.mark.parametrize("path", sorted((ROOT / "samples").glob("*.yaml")), ids=lambda path: path.stem)
 def test_the_kernel_stays_in_its_memory(path, monkeypatch):
     play, windows = driver.run_kernel, []
+    monkeypatch.setattr(machine_code, "is_worth_it", lambda *_: False)
     monkeypatch.setattr(driver, "run_kernel", lambda memory: windows.append(1) or play(Guarded(memory)))
     simulate(path, duration="30 ms")
     assert windows
