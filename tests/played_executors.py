@@ -243,7 +243,8 @@ class Played:
         timeout = max(0, min([timeout, *dues]))
         if waiting.resolution:
             timeout = timeout // waiting.resolution * waiting.resolution
-        if not listens and waiting.polls_without_messages:
+        sends_only = bool(self.entities) and all(each.is_item for each in self.entities)
+        if not listens and (waiting.polls_without_messages or sends_only):
             return
         if self.is_shared:
             yield Lock(session.mutex)

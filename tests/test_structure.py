@@ -30,7 +30,7 @@ LINES = {
     "difference": 790,
     "editor": 656,
     "errors": 13,
-    "executors": 2569,
+    "executors": 2572,
     "findings": 535,
     "inchron": 535,
     "inchron_bridge": 3349,

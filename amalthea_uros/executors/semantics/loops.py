@@ -31,6 +31,7 @@ from amalthea_uros.executors.semantics.readiness import (
     can_defer,
     is_message,
     messages,
+    only_sends,
     shares_session,
     starts_alone,
     thread_of,
@@ -67,7 +68,7 @@ def is_paced(executor: Executor) -> bool:
 
 def returns_at_once(executor: Executor) -> bool:
     """Whether the wait of an executor always returns at once, because nothing of it receives messages."""
-    return executor.waiting.polls_without_messages and not messages(executor)
+    return not messages(executor) and (executor.waiting.polls_without_messages or only_sends(executor))
 
 
 def cut(timeout: Time, executor: Executor) -> Time:
@@ -147,7 +148,7 @@ def waits_return_at_once(executor: Executor) -> str:
     A timer that is due makes the timeout 0, also if the trigger condition defers it (ros2/rcl, rcl/src/rcl/wait.c).
     """
     if not timeout_of(executor):
-        if executor.handles and all(handle.kind is HandleKind.LOOP_ITEM for handle in executor.handles):
+        if only_sends(executor):
             return "nothing waits between two times that it sends"
         what = "it has only timers" if not messages(executor) else "its timeout is below the resolution of the middleware"
         return f"its waits return at once, because {what}"

@@ -51,7 +51,12 @@ def takes_one_message(executor: Executor, system: System) -> bool:
 
 def reads_in_waits(executor: Executor) -> bool:
     """Whether the waits of an executor read from the receive buffer; with timers only, they may return at once instead."""
-    return bool(messages(executor)) or not executor.waiting.polls_without_messages
+    return bool(messages(executor)) or not (executor.waiting.polls_without_messages or only_sends(executor))
+
+
+def only_sends(executor: Executor) -> bool:
+    """Whether an executor stands for what a loop sends itself, which waits for nothing."""
+    return bool(executor.handles) and all(handle.kind is HandleKind.LOOP_ITEM for handle in executor.handles)
 
 
 def has_backlog(executor: Executor, system: System) -> bool:

@@ -14,7 +14,7 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.uros.described import describe_content
 
-#: An odd time by which the second executor sleeps longer, so that no two things occur at the same instant.
+#: An odd time by which each executor sleeps longer, so that no two things occur at the same instant.
 _APART = 137_000
 
 
@@ -55,7 +55,7 @@ def _of_executors(seed: int, tally: Tally) -> list[str]:
 
 
 def _apart(system: System) -> System:
-    executors = [_longer(each, _APART * number) if number else each for number, each in enumerate(system.executors)]
+    executors = [_longer(each, _APART * number) for number, each in enumerate(system.executors, 1)]
     return replace(system, executors=tuple(executors))
 
 
