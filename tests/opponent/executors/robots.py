@@ -59,7 +59,7 @@ def random_robot(seed: int) -> Section:
 
 
 def controller(part: str, content: Section) -> Section:
-    """A description as a controller of a robot, with topics of its own."""
+    """A description as a controller of a robot, with topics and services of its own."""
     content = deepcopy(content)
     del content["amuros"]
     content["name"] = part
@@ -67,6 +67,9 @@ def controller(part: str, content: Section) -> Section:
         for kind in ("publishers", "subscriptions"):
             for each in node.get(kind, ()):
                 each["topic"] = f"{part}_{each['topic']}"
+        for kind in ("services", "clients"):
+            for each in node.get(kind, ()):
+                each["service"] = f"{part}_{each.get('service', each['name'])}"
         for callback in _callbacks(node):
             callback["publishes"] = [f"{part}_{topic}" for topic in callback.get("publishes", ())]
     for chain in content["chains"]:
