@@ -197,6 +197,7 @@ class Executor(Named):
     handles : in the order in which they were added, which is that in which callbacks are called
     takes_first : whether all messages of an iteration are taken before the first callback (LET semantics)
     session : executors with the same one, of a middleware for several threads, exclude each other while they wait or send
+    client : of the middleware, to which it belongs; "" in a system with one controller
     """
 
     task: str
@@ -207,6 +208,7 @@ class Executor(Named):
     takes_first: bool = False
     waiting: WaitBehaviour = field(default_factory=WaitBehaviour)
     session: str | None = None
+    client: str = ""
     poll: str | None = None
     busy_wait: str | None = None
     place: ThreadPlace | None = None

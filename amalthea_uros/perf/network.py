@@ -110,7 +110,7 @@ class Wire(Named):
     losses : how many are; none of them if that is not known
     recovery : None if nothing is acknowledged, or who asks for missing acknowledgements is not known
     keeps_sender : whether a thread of the controller that sends waits until its message is on the wire
-    executors : at the end of the wire that is not the agent; none for all of the system, which then has one controller
+    client : of the middleware, at the end of the wire that is not the agent; "" in a system with one controller
     """
 
     kind: WireKind
@@ -119,7 +119,7 @@ class Wire(Named):
     losses: tuple[Losses, ...] = ()
     recovery: Recovery | None = None
     keeps_sender: bool = False
-    executors: tuple[str, ...] = ()
+    client: str = ""
 
 
 class Purpose(StrEnum):

@@ -20,7 +20,7 @@ _MODELS = ("hardware", "os", "stimuli", "software", "mapping", "events", "constr
 #: Fields whose texts name no object of a system: topics are the same for all controllers, others are literals or for people.
 _NO_NAMES = frozenset(
     {
-        *("topic", "publishes", "agent", "assumptions", "policy", "needs"),
+        *("topic", "publishes", "agent", "client", "assumptions", "policy", "needs"),
         *("value", "literals", "initial"),
         *("kind", "reason", "description", "origin"),
     }
@@ -54,9 +54,9 @@ def _renamed(item: Any, part: str) -> Any:
 def joined(parts: Mapping[str, System]) -> System:
     """Several systems as one; each object has the name of its part before its own name.
 
-    Each wire says which executors are at its end, so that the clients of the middleware stay apart.
+    Each part is a client of the middleware of its own.
     """
-    systems = [qualified(_with_ends(system, part), part) for part, system in parts.items()]
+    systems = [qualified(_as_client(system, part), part) for part, system in parts.items()]
     agents = dict.fromkeys(each.network.agent for each in systems if each.network.wires)
     whole = System(
         executors=tuple(executor for each in systems for executor in each.executors),
@@ -65,12 +65,16 @@ def joined(parts: Mapping[str, System]) -> System:
     return replace(whole, network=replace(whole.network, agent=" and ".join(agents) or whole.network.agent))
 
 
-def _with_ends(system: System, part: str) -> System:
-    """The system with the executors at the end of each wire, and with the name of the part in sentences about its times."""
-    network, ends = system.network, tuple(executor.name for executor in system.executors)
-    wires = tuple(replace(wire, executors=wire.executors or ends) for wire in network.wires)
+def _as_client(system: System, part: str) -> System:
+    """The system with the name of the part as that of its client, and in sentences about the times of its network."""
+    network = system.network
+    wires = tuple(replace(wire, client=part) for wire in network.wires)
     assumptions = tuple(f"{part}: {sentence}" for sentence in network.assumptions)
-    return replace(system, network=replace(network, wires=wires, assumptions=assumptions))
+    return replace(
+        system,
+        executors=tuple(replace(each, client=part) for each in system.executors),
+        network=replace(network, wires=wires, assumptions=assumptions),
+    )
 
 
 def _merged(models: Sequence[Any]) -> Any:

@@ -188,27 +188,27 @@ class System:
                 tasks.setdefault(each.place.thread, set()).add(each.task)
         return {thread: frozenset(names) for thread, names in tasks.items()}
 
-    @cached_property
+    @property
     def clients(self) -> tuple[System, ...]:
-        """The system as each client of the middleware sees it: with no executors and wires but its own; itself if it has one."""
-        ends = dict.fromkeys(wire.executors for wire in self.network.wires)
-        if all(not each for each in ends):
-            return (self,)
-        apart = {name for each in ends for name in each}
-        others = tuple(each.name for each in self.executors if each.name not in apart)
-        return tuple(self._client(each) for each in ends) + ((self._client(others),) if others and others not in ends else ())
+        """The system as each client of the middleware sees it: with no executors and wires but its own; itself if there is one."""
+        return self._several_clients or (self,)
 
-    def _client(self, executors: tuple[str, ...]) -> System:
-        wires = tuple(wire for wire in self.network.wires if wire.executors == executors)
-        names = {wire.name for wire in wires}
+    @cached_property
+    def _several_clients(self) -> tuple[System, ...]:
+        names = dict.fromkeys((*(each.client for each in self.executors), *(each.client for each in self.network.wires)))
+        return tuple(map(self._client, names)) if len(names) > 1 else ()
+
+    def _client(self, name: str) -> System:
+        wires = tuple(wire for wire in self.network.wires if wire.client == name)
+        own = {wire.name for wire in wires}
         # The agent can bring what other clients publish.
         published = Direction.TO_AGENT, Purpose.DATA
         sent = tuple(
-            each for each in self.network.transmissions if each.wire in names or (each.direction, each.purpose) == published
+            each for each in self.network.transmissions if each.wire in own or (each.direction, each.purpose) == published
         )
         return replace(
             self,
-            executors=tuple(each for each in self.executors if each.name in executors),
+            executors=tuple(each for each in self.executors if each.client == name),
             network=replace(self.network, wires=wires, transmissions=sent),
         )
 

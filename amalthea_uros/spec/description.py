@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.fields import entry, examines
+from amalthea_uros.spec.fields import Limits, entry, examines
 from amalthea_uros.spec.hardware import HardwareSection
 from amalthea_uros.spec.host import HostSection
 from amalthea_uros.spec.middleware import Middleware
@@ -16,6 +16,9 @@ from amalthea_uros.spec.processes import IsrSection, LabelSection, TaskSection
 from amalthea_uros.spec.requirements import Chain, RequirementSection
 from amalthea_uros.spec.section import EXTENSION, DescriptionSection
 from amalthea_uros.spec.values import Name, VersionedSection, problem
+
+#: Each is assembled anew, also if several name the same file.
+MAX_CONTROLLERS = 100
 
 
 class ControllerSection(DescriptionSection):
@@ -60,7 +63,7 @@ class RobotController(ControllerSection):
 
     @examines
     def _is_in_one_place(self) -> Self:
-        own = _stated_of_controller(self) if self.file is not None else []
+        own = _stated_of_controller(self, "chains", "requirements") if self.file is not None else []
         if own:
             raise problem(f"{own[0]!r} cannot be combined with 'file': state it there")
         return self
@@ -69,7 +72,9 @@ class RobotController(ControllerSection):
 class Description(ControllerSection, VersionedSection):
     """A micro-ROS application on a controller, and the other software that runs there; or a robot with several controllers."""
 
-    controllers: list[RobotController] = entry(default_factory=list, min_length=1)
+    controllers: Annotated[list[RobotController], Limits(min_length=1, max_length=MAX_CONTROLLERS)] = entry(
+        default_factory=list
+    )
     """The controllers of a robot that has several ones; the name of each comes before those of its objects, e.g. `drive_Motor`."""
     host: HostSection | None = None
     """The host with ROS 2 at the other end of the transport."""
@@ -109,9 +114,10 @@ def _with_hardware_of(key: str, value: Any) -> Any:
     return value | {"hardware": {}} if has_other else value
 
 
-def _stated_of_controller(section: ControllerSection) -> list[str]:
+def _stated_of_controller(section: ControllerSection, *more: str) -> list[str]:
+    """The keys of a section that only one controller has, and of some more, that it states."""
     hardware = ["hardware"] if section.hardware.model_fields_set else []
-    return hardware + [key for key in OF_CONTROLLER if section.states(key)]
+    return hardware + [key for key in (*OF_CONTROLLER, *more) if section.states(key)]
 
 
 #: The draft that editors support.

@@ -14,6 +14,26 @@ from amalthea_uros.spec.mistakes import CERTAIN
 _SUFFIXES = (".yaml", ".yml")
 
 
+def named_file(kind: str, name: str, folder: Path, location: Location | None) -> Path:
+    """A file of users that a description names.
+
+    Parameters
+    ----------
+    kind : of the file, for the message
+    folder : that the name is relative to
+    location : where the name is stated
+
+    Raises
+    ------
+    ReadError : there is no such file.
+    """
+    path = folder / name
+    if path.is_file():
+        return path
+    advice = "Give a path relative to the directory of this file."
+    raise ReadError([Finding("APP001", Severity.ERROR, f"{kind} {str(path)!r} not found", location, advice)])
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownFiles:
     """Files of one kind that come with amuros.
@@ -42,11 +62,7 @@ class KnownFiles:
         ReadError : there is no such file.
         """
         if name.endswith(_SUFFIXES):
-            path = folder / name
-            if path.is_file():
-                return path, ()
-            advice = "Give a path relative to the directory of this file."
-            raise ReadError([Finding("APP001", Severity.ERROR, f"{self.kind} file {str(path)!r} not found", location, advice)])
+            return named_file(f"{self.kind} file", name, folder, location), ()
         if name in self.files:
             return self.files[name], ()
         finding = self.unknown(name, location)

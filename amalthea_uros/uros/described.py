@@ -12,6 +12,7 @@ from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description, RobotController
+from amalthea_uros.spec.known_files import named_file
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import Draft, content_draft, description_text, text_draft
 from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
@@ -147,10 +148,8 @@ def _controller(section: RobotController, folder: Path) -> Described:
     """A controller of a robot, described in its file or in that of the robot."""
     if section.file is None:
         return described_section(Description.of_controller(section), folder)
-    path, place = folder / section.file, section.location("file")
-    if not path.is_file():
-        message, advice = f"app.yaml file {str(path)!r} not found", "Give a path relative to the directory of this file."
-        raise ReadError([Finding("APP001", Severity.ERROR, message, place, advice)])
+    place = section.location("file")
+    path = named_file("file of a controller", section.file, folder, place)
     draft = text_draft(path, description_text(path), Description)
     if draft.section is not None and draft.section.controllers:
         message = f"{str(path)!r} describes a robot of several controllers, not one of them"
@@ -174,10 +173,8 @@ def database_frames(description: Description, folder: Path) -> tuple[ForeignFram
     bus = transport.can or transport.can_fd
     if bus is None or bus.dbc is None:
         return ()
-    path, stated = folder / bus.dbc, bus.location("dbc")
-    if not path.is_file():
-        advice = "Give a path relative to the directory of this file."
-        raise ReadError([Finding("APP001", Severity.ERROR, f"DBC file {str(path)!r} not found", stated, advice)])
+    stated = bus.location("dbc")
+    path = named_file("DBC file", bus.dbc, folder, stated)
     return tuple(_frame(message, stated) for message in read_dbc(path).messages.values())
 
 

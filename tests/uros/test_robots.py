@@ -70,6 +70,19 @@ def test_controllers_that_exchange_nothing_have_the_results_that_each_has_alone(
     assert_apart(*map(of_sample, names))
 
 
+def test_so_have_those_without_a_wire():
+    """Their executors have no session, but each controller has buffers of its own."""
+    content = yaml.safe_load(CONSTANT.format(latency=0))
+    middleware = {"executor": {"name": "E", "priority": 1, "loop": {"spin": "1 s"}, "execution_time": "10 us"}}
+    subscription = {"topic": "t", "message_size": "8 B", "execution_time": "20 us", "interval": "10 ms"}
+    systems = []
+    for names in (["A"], ["B", "C"]):
+        node = {"name": "n", "subscriptions": [{"name": name, **subscription} for name in names]}
+        section = {**content["controllers"][0], "middleware": middleware, "application": {"nodes": [node]}}
+        systems.append(describe_content({"amuros": 1, **section}).assembly.system)
+    assert_apart(*systems)
+
+
 @pytest.mark.parametrize("seed", every(5, range(60)))
 def test_so_have_random_ones(seed):
     chance, systems = Random(seed), []
@@ -226,7 +239,7 @@ def test_mistakes(change, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (None, "not found"),
+        (None, "file of a controller .* not found"),
         ("amuros: 1\nname: x\ncontrollers: [{name: y, file: z.yaml}]\n", "describes a robot of several controllers"),
         ("amuros: 1\nname: x\nhardware: {platform: esp32}\nhost: {ros: humble, computers: [{name: pc}]}\n", "has a 'host'"),
     ],
@@ -236,6 +249,19 @@ def test_mistakes_in_the_file_of_a_controller(files, text, message):
     path.unlink() if text is None else path.write_text(text)
     with pytest.raises(ReadError, match=message):
         describe_file(files)
+
+
+@pytest.mark.parametrize("key", ["chains", "requirements", "labels"])
+def test_nothing_beside_the_file_of_a_controller_is_left_out(key):
+    content = {"amuros": 1, "name": "x", "controllers": [{"name": "y", "file": "y.yaml", key: {} if key == "labels" else []}]}
+    with pytest.raises(ReadError, match=f"'{key}' cannot be combined with 'file'"):
+        describe_content(content)
+
+
+def test_there_are_not_so_many_controllers_that_nobody_waits_for_them():
+    content = {"amuros": 1, "name": "x", "controllers": [{"name": f"c{n}", "file": "c.yaml"} for n in range(101)]}
+    with pytest.raises(ReadError, match="at most 100"):
+        describe_content(content)
 
 
 def test_two_names_that_are_the_same_with_those_of_controllers_before_them():
