@@ -10,7 +10,9 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from functools import wraps
+from os.path import realpath
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -28,8 +30,8 @@ _OPTION = "--watch"
 #: Seconds between two looks at the files. A change counts when it is the same twice, because editors write in several steps.
 _INTERVAL = 0.2
 
-#: A platform file that a description names. It is looked for as text, because it shall be found also while the rest is being edited.
-_PLATFORM = re.compile(rb"""\bplatform["']?[ \t]*:[ \t]*["']?([^\s"',}#]+\.ya?ml)\b""")
+#: A file that a description names. It is looked for as text, because it shall be found also while the rest is being edited.
+_NAMED = re.compile(rb""":[ \t]*["']?([^\s"',}#]+\.(?:ya?ml|dbc))\b""")
 
 #: What shows that a file changed, None for one that does not exist.
 State = Mapping[Path, tuple[int, int, int] | None]
@@ -91,7 +93,7 @@ def _state(inputs: list[Path]) -> State:
 
 
 def watched_files(paths: Iterable[Path]) -> frozenset[Path]:
-    """The files that paths name: themselves, the models of folders, and the platform files of descriptions."""
+    """The files that paths name: themselves, the models of folders, and the files that descriptions name, such as platforms."""
     return frozenset(file for path in paths for file in _files(path))
 
 
@@ -101,12 +103,25 @@ def _files(path: Path) -> Iterable[Path]:
     try:
         if is_directory(path):
             return [file for file in list_directory(path) if is_model_name(file)]
-        if is_description(path):
-            named = _PLATFORM.findall(read_bytes(path, DESCRIPTION_SIZE))
-            return [path, *(path.parent / name.decode(errors="replace") for name in named)]
     except FileError:
-        pass  # the command says what is wrong with it
-    return [path]
+        return [path]  # the command says what is wrong with it
+    return _with_named([path])
+
+
+def _with_named(waiting: list[Path]) -> Iterable[Path]:
+    """Files, and those that descriptions among them name, directly or not."""
+    known: dict[str, Path] = {}
+    while waiting:
+        path = waiting.pop()
+        # A file can be named in any number of ways, by itself, too.
+        if (place := realpath(path)) in known:
+            continue
+        known[place] = path
+        if is_description(path):
+            with suppress(FileError):
+                named = _NAMED.findall(read_bytes(path, DESCRIPTION_SIZE))
+                waiting += [path.parent / name.decode(errors="replace") for name in named]
+    return known.values()
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:

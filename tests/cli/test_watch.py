@@ -86,6 +86,14 @@ def test_what_is_watched(folder):
     for text in ("hardware:\n  platform: ./mine.yaml # ours\n", "hardware: {platform: 'mine.yml', cores: 2}\n"):
         path.write_text(text)
         assert watched_files([path]) == {path, folder / ("mine.yml" if "yml" in text else "mine.yaml")}
+    path.write_text("controllers:\n  - {name: a, file: a.yaml}\n  - {name: b, file: 'sub/b.yml'}\n")
+    (folder / "a.yaml").write_text("hardware: ./board.yaml\nmiddleware: {transport: {can: {dbc: bus.dbc}}}\n")
+    named = ("a.yaml", "sub/b.yml", "board.yaml", "bus.dbc")
+    assert watched_files([path]) == {path, *(folder / name for name in named)}
+    for name in ("one", "two"):
+        (folder / name).mkdir()
+    path.write_text("x: one/../app.yaml\ny: two/../app.yaml\n")
+    assert watched_files([path]) == {path}
     path.write_text("hardware: {platform: generic}\n")
     assert watched_files([path]) == {path}
     assert watched_files([folder / "nothing.yaml"]) == {folder / "nothing.yaml"}
