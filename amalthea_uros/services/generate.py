@@ -8,19 +8,18 @@ from pathlib import Path
 from amalthea_uros._internal.files import FileError, is_file, read_text
 from amalthea_uros._internal.limits import SETTINGS_SIZE
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.services.files import refuse, save_new
-from amalthea_uros.services.generated_controller import SOLVED, described_controller
-from amalthea_uros.services.waiting_messages import waiting_messages, with_analysed_storage
+from amalthea_uros.services.generated_controller import SOLVED, generated_controller
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.colcon_meta import parse_meta
 from amalthea_uros.uros.generated_files import MARK, CodeWishes, code_findings, generated_memory, generated_storage, texts_of
-from amalthea_uros.uros.generated_options import check_meta
+from amalthea_uros.uros.generated_options import check_meta, with_waiting_messages
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.memory_findings import exceeded_memory
 
@@ -99,11 +98,11 @@ def generate(
     ReadError : the description cannot be read, something in it is wrong, or it has no micro-ROS application.
     WriteError : a file cannot be written, or would be replaced.
     """
-    assembly = described_controller(Path(path), platform, controller)
+    assembly, waiting = generated_controller(Path(path), platform, controller)
     if not assembly.description.application.nodes:
         message, advice = "no micro-ROS application: nothing to generate", "Add nodes under 'application'."
         raise ReadError([Finding("GEN009", Severity.ERROR, message, Location(Path(path)), advice)])
-    assembly = with_analysed_storage(assembly)
+    assembly = replace(assembly, options=with_waiting_messages(assembly.options, waiting))
     target = None if folder is None else Path(folder)
     wishes = CodeWishes(reconnects=reconnect, stamps=stamps) if code or reconnect or stamps else None
     texts = texts_of(assembly, wishes)
@@ -138,14 +137,14 @@ def check_colcon_meta(path: StrPath, meta: StrPath, platform: str | None = None,
     ------
     ReadError : one of the files cannot be read.
     """
-    assembly = described_controller(Path(path), platform, controller)
+    assembly, waiting = generated_controller(Path(path), platform, controller)
     file = Path(meta)
     try:
         text = read_text(file, SETTINGS_SIZE)
     except FileError as error:
         raise ReadError([Finding("GEN006", Severity.ERROR, error.reason, Location(file), error.advice)]) from None
     description, file_options = assembly.description, parse_meta(file, text)
-    findings = check_meta(description.application, assembly.profile, file_options, assembly.memory, waiting_messages(assembly))
+    findings = check_meta(description.application, assembly.profile, file_options, assembly.memory, waiting)
     return MetaCheck(description=Path(path), path=file, findings=findings)
 
 

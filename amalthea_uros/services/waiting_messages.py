@@ -11,6 +11,7 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.qualified import qualified
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.generated_options import WaitingMessages, with_waiting_messages
 from amalthea_uros.uros.middleware.checks import kept_messages
@@ -25,7 +26,16 @@ def with_analysed_storage(assembly: Assembly, analysis: Analysis | None = None) 
     ----------
     analysis : of its system; None: it is made
     """
-    waiting = waiting_messages(assembly, analysis)
+    if assembly.controllers:
+        analysis = analysis or analyze_system(assembly.system)
+        parts = {
+            name: _with_storage(each, waiting_messages(each, analysis, name)) for name, each in assembly.controllers.items()
+        }
+        return replace(assembly, controllers=parts)
+    return _with_storage(assembly, waiting_messages(assembly, analysis))
+
+
+def _with_storage(assembly: Assembly, waiting: WaitingMessages | None) -> Assembly:
     return replace(assembly, options=with_waiting_messages(assembly.options, waiting))
 
 
@@ -41,7 +51,9 @@ def findings_of(assembly: Assembly | None, analysis: Analysis) -> Iterator[Findi
     assembly : of the system of the analysis; None if no description says how large the memory is
     """
     for finding in analysis.findings:
-        advice = _storage_advice(assembly, analysis) if finding.rule == _NO_SLOT and assembly is not None else ""
+        # The storage of a robot is that of several controllers, each with its own memory.
+        is_stored = finding.rule == _NO_SLOT and assembly is not None and not assembly.controllers
+        advice = _storage_advice(assembly, analysis) if is_stored and assembly is not None else ""
         yield replace(finding, help=advice) if advice else finding
 
 
@@ -51,19 +63,23 @@ def _storage_advice(assembly: Assembly, analysis: Analysis) -> str:
     return "" if storage is None or waiting is None else storage.advice(waiting.most, f"{waiting.most}, {waiting.why}")
 
 
-def waiting_messages(assembly: Assembly, analysis: Analysis | None = None) -> WaitingMessages | None:
+def waiting_messages(assembly: Assembly, analysis: Analysis | None = None, part: str = "") -> WaitingMessages | None:
     """The messages that can wait at the same time; None if the middleware has no limit for them, or no executor spins in a loop.
 
     Parameters
     ----------
-    analysis : of the system of the assembly; None: it is made
+    analysis : of the system of the assembly, or of the robot that it is a part of; None: it is made
+    part : the name of the controller in the robot
     """
     described = [each.available for each in assembly.options if each.role is OptionRole.QUEUE]
     executors = assembly.system.executors
     if not described or not executors:
         return None
-    found = (analysis or analyze_system(assembly.system)).executors
-    unbounded = [name for each in executors for name in _unbounded(each, found[each.name])]
+    if part:
+        executors = tuple(qualified(each, part) for each in executors)
+    results = (analysis or analyze_system(assembly.system)).executors
+    found = [results[each.name] for each in executors]
+    unbounded = [name for each in executors for name in _unbounded(each, results[each.name])]
     periodic = [each.name for each in assembly.description.middleware.stated_executors if each.loop is None]
     needed = [each.slots_needed for each in found if each.slots_needed is not None]
     if not periodic and len(needed) == len(found):

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.system import System
@@ -49,6 +49,7 @@ class Assembly(Brief):
     findings : of severity warning and info
     task_periods : those that the middleware offers to tasks; empty if it offers any
     priority_scale : what priorities of tasks mean in the description
+    controllers : of a robot, by name; their pools, memory and messages are theirs, not those of the robot
     """
 
     description: Description
@@ -65,6 +66,7 @@ class Assembly(Brief):
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
     priority_scale: PriorityScale
+    controllers: Mapping[str, Assembly] = field(default_factory=dict)
 
     @property
     def pools(self) -> tuple[Option, ...]:

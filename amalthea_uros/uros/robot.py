@@ -67,6 +67,7 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
         ),
         task_periods=(),
         priority_scale=HIGHER_IS_MORE_URGENT,
+        controllers=controllers,
     )
 
 

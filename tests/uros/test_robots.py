@@ -1,10 +1,13 @@
 """Robots with several controllers: described in one file or several ones, analysed and simulated as one system."""
 
+import json
 from dataclasses import replace
+from html import unescape
 from random import Random
 
 import pytest
 import yaml
+from command import amuros as run_amuros
 from effort import every
 from opponent.executors.claims import false_claims, runs_of
 from opponent.executors.descriptions import random_description
@@ -294,6 +297,45 @@ def test_files_for_the_build_are_those_of_one_controller(files, tmp_path):
         with pytest.raises(ReadError) as caught:
             amuros.generate(files, controller=name)
         assert caught.value.findings[0].help == "Choose one with --controller: base, arm."
+
+
+@pytest.fixture(scope="module")
+def strangers():
+    """Two samples that exchange nothing as a robot."""
+    controllers = [{"name": name[:5], "file": str(SAMPLES / f"{name}.yaml")} for name in ("esp32-serial", "stm32-usb-cdc")]
+    return yaml.safe_dump({"amuros": 1, "name": "robot", "controllers": controllers})
+
+
+@pytest.mark.parametrize("name", ["esp32-serial", "stm32-usb-cdc"])
+def test_generated_files_and_those_in_a_report_are_the_same(strangers, name, tmp_path):
+    (tmp_path / "robot.yaml").write_text(strangers)
+    options = amuros.generate(tmp_path / "robot.yaml", controller=name[:5]).texts["colcon.meta"]
+    assert options == amuros.generate(SAMPLES / f"{name}.yaml").texts["colcon.meta"]
+    page = unescape(amuros.report(strangers, with_simulation=False).html)
+    assert all(line in page for line in options.splitlines())
+
+
+def test_pools_and_memory_are_those_of_each_controller(strangers, tmp_path):
+    (tmp_path / "robot.yaml").write_text(strangers)
+    record = built(tmp_path / "robot.yaml", tmp_path)
+    assert record["memory"] is None
+    for name in ("esp32-serial", "stm32-usb-cdc"):
+        alone = built(SAMPLES / f"{name}.yaml", tmp_path)
+        assert record["controllers"][name[:5]] == {key: alone[key] for key in ("messages", "initialisation", "pools", "memory")}
+
+
+def built(path, folder):
+    run_amuros("build", path, "-o", folder / "built.amxmi", "--force", "--output", f"json={folder / 'built.json'}")
+    return json.loads((folder / "built.json").read_text())
+
+
+def test_two_robots_are_compared_by_the_files_of_their_controllers(files, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    for path in files.parent.glob("*.yaml"):
+        (other / path.name).write_text(path.read_text().replace("name: Joint\n  period: 5 ms", "name: Joint\n  period: 9 ms"))
+    described = amuros.diff(files, other / "robot.yaml").described
+    assert [(each.target, each.before, each.after) for each in described] == [("arm.Joint.period", "5 ms", "9 ms")]
 
 
 def test_a_robot_is_not_calibrated_as_a_whole(tmp_path):

@@ -6,10 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
+from amalthea_uros._internal.records import replace
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.key import UNSET
 from amalthea_uros.design.description.keys import DescriptionKey, is_listed, keys_of, short_name
 from amalthea_uros.design.description.text_edits import rendered, value_text
+from amalthea_uros.spec.read import description_text
 from amalthea_uros.uros.described import describe_text
 
 #: The names on the way to a value or an object, which identify it in both descriptions.
@@ -23,7 +25,9 @@ class _DescriptionSide:
 
     def __init__(self, text: str, path: Path) -> None:
         self.text = text
-        self.keys: Sequence[DescriptionKey] = keys_of(describe_text(text, path).whole, text)
+        described = describe_text(text, path)
+        self.keys: Sequence[DescriptionKey] = keys_of(described.whole, text)
+        self.files = {each.name: path.parent / each.file for each in described.description.controllers if each.file is not None}
         self.values: Mapping[_Names, DescriptionKey] = {key.names: key for key in self.keys if is_listed(key)}
         self.objects = {self._object(key): None for key in self.keys if self._object(key)}
 
@@ -52,7 +56,16 @@ def description_differences(old: str, old_path: Path, new: str, new_path: Path) 
     ------
     ReadError : something in one of them is wrong.
     """
-    return tuple(_differences(_DescriptionSide(old, old_path), _DescriptionSide(new, new_path)))
+    sides = _DescriptionSide(old, old_path), _DescriptionSide(new, new_path)
+    return (*_differences(*sides), *_of_files(*sides))
+
+
+def _of_files(old: _DescriptionSide, new: _DescriptionSide) -> Iterator[Difference]:
+    """The differences of the files of the controllers that both robots have, with the names of these."""
+    for name in (each for each in new.files if each in old.files):
+        before, after = old.files[name], new.files[name]
+        for each in description_differences(description_text(before), before, description_text(after), after):
+            yield replace(each, object=f"{name}.{each.object}".removesuffix("."))
 
 
 def _differences(old: _DescriptionSide, new: _DescriptionSide) -> Iterator[Difference]:

@@ -22,7 +22,7 @@ Source: TypeAlias = DescriptionOrigin | ModelOrigin
 #: Each structure is built before the search begins.
 MOST_STRUCTURES = 500
 
-#: What makes the rules and orders of the structure of a system; the assembly is that of its description.
+#: Makes the rules and orders of the structure of a system; the assembly is that of its description.
 Completed = Callable[[tuple[Change, ...], System, Assembly | None], RebuiltStructure]
 
 

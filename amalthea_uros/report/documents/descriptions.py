@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.report.basics.document import (
     Badge,
+    Block,
     Cell,
     Lead,
     Listing,
@@ -47,18 +48,28 @@ def build_document(result: BuildResult) -> ResultDocument:
     rest = f": AMALTHEA {result.document.version}, {objects}, built from {result.description}"
     written = lines(Lead(str(result.document.path or "unsaved"), rest))
     tasks, isrs = _tasks(assembly), _isrs(assembly)
-    start = [] if assembly.initialisation is None else list(_start_texts(assembly.initialisation))
     sections = (
         section("", written),
         section(f"Tasks ({len(tasks.rows)})", tasks, Sentences([assembly.placement] if assembly.placement else [])),
         section(f"Interrupt service routines ({len(isrs.rows)})", isrs),
         _executors(assembly.system.executors),
-        section(f"Messages on the CAN bus (bus load at most {_bus_load(assembly)})", _messages(assembly)),
-        section("Initialisation of the middleware", Sentences(start)),
-        section("Static pools", _pools(assembly)),
-        section("Memory", _memory(assembly.memory)),
+        *(each for one, of in _controllers(assembly) for each in _of_middleware(one, of)),
     )
     return document(sections, kept=[written])
+
+
+def _controllers(assembly: Assembly) -> list[tuple[Assembly, str]]:
+    """The controllers, with what titles say of which one they are; nothing if there is one."""
+    return [(each, f" of {name}") for name, each in assembly.controllers.items()] or [(assembly, "")]
+
+
+def _of_middleware(assembly: Assembly, of: str) -> Iterator[Section]:
+    """The messages, the start and the pools of the middleware of a controller, and its memory."""
+    start = [] if assembly.initialisation is None else list(_start_texts(assembly.initialisation))
+    yield section(f"Messages on the CAN bus{of} (bus load at most {_bus_load(assembly)})", _messages(assembly))
+    yield section(f"Initialisation of the middleware{of}", Sentences(start))
+    yield section(f"Static pools{of}", _pools(assembly))
+    yield section(f"Memory{of}", _memory(assembly.memory))
 
 
 def _tasks(assembly: Assembly) -> Table:
@@ -108,7 +119,7 @@ def _loop_text(executor: Executor) -> str:
     )
 
 
-def _messages(assembly: Assembly) -> Table:
+def _messages(assembly: Assembly, of: str = "") -> Table:
     """What an `app.yaml` sends and receives, with headers and maximum bit stuffing."""
     rows = [
         (
@@ -124,7 +135,7 @@ def _messages(assembly: Assembly) -> Table:
         for each in assembly.messages
     ]
     titles = ("topic", "direction", ">interval", ">with headers", ">frames", ">identifier", ">transmission time", ">bus load")
-    return table("Messages of the application", titles, rows)
+    return table(f"Messages of the application{of}", titles, rows)
 
 
 def _bus_load(assembly: Assembly) -> str:
@@ -163,7 +174,7 @@ def _traffic_texts(traffic: CreationTraffic, load: Fraction | None) -> Iterator[
         yield traffic.reason
 
 
-def _pools(assembly: Assembly) -> Table:
+def _pools(assembly: Assembly, of: str = "") -> Table:
     """How many objects of the middleware are needed; how many messages wait depends on response times, which no model has."""
     from amalthea_uros.uros.middleware.options import OptionRole
 
@@ -173,10 +184,10 @@ def _pools(assembly: Assembly) -> Table:
         return pool.name, needed, f"{pool.available}", "app.yaml" if pool.is_stated else "default", verdict
 
     titles = ("option", ">needed", ">available", "set by", "verdict")
-    return table("Pools of the middleware", titles, (row(pool) for pool in assembly.pools if pool.needed))
+    return table(f"Pools of the middleware{of}", titles, (row(pool) for pool in assembly.pools if pool.needed))
 
 
-def _memory(memory: MemoryDemand) -> Table:
+def _memory(memory: MemoryDemand, of: str = "") -> Table:
     """The parts with sizes and remarks, then total, budget and memory of the board; empty without micro-ROS and stated stacks."""
     stacks = memory.stacks
     rows = [(use.name, f"{use.size} B" if use.is_bounded else "?", use.formula) for use in memory.uses]
@@ -189,28 +200,36 @@ def _memory(memory: MemoryDemand) -> Table:
         rows.append(("total" if memory.is_complete else "total, at least", f"{memory.total} B", missing))
         limits = {"budget": memory.budget, "memory of the board": memory.ram}
         rows += [(name, f"{size} B", "") for name, size in limits.items() if size is not None]
-    return table("Memory", ("part", ">size", "how it is computed"), rows)
+    return table(f"Memory{of}", ("part", ">size", "how it is computed"), rows)
 
 
 def bus_section(content: ReportContent) -> Section | None:
     """What an `app.yaml` sends and receives."""
-    if content.assembly is None or not content.assembly.messages:
+    buses = [] if content.assembly is None else [each for each in _controllers(content.assembly) if each[0].messages]
+    if not buses:
         return None
-    need = _bus_load(content.assembly)
-    lead = f"Each message with its headers and maximum bit stuffing; together they need at most {need} of the bus."
-    return Section("messages", "Messages on the CAN bus", lead, [_messages(content.assembly)])
+    need = ", ".join(f"{_bus_load(each)} of the bus{of}" for each, of in buses)
+    lead = f"Each message with its headers and maximum bit stuffing; together they need at most {need}."
+    return Section("messages", "Messages on the CAN bus", lead, [_messages(each, of) for each, of in buses])
 
 
 def pools_section(content: ReportContent) -> Section | None:
     """The pools that the application needs, the files for a build with the right sizes, and the memory."""
     from amalthea_uros.uros.generated_files import texts_of
 
-    assembly = content.assembly
-    if assembly is None or not assembly.description.application.nodes:
+    controllers = [] if content.assembly is None else _controllers(content.assembly)
+    blocks: list[Block] = []
+    for assembly, of in ((each, of) for each, of in controllers if each.description.application.nodes):
+        files = ((f"{name}{of}", text) for name, text in texts_of(assembly).items() if not name.endswith(".h"))
+        blocks += [
+            _pools(assembly, of),
+            _memory(assembly.memory, of),
+            *(Listing(name, text.splitlines()) for name, text in files),
+        ]
+    if not blocks:
         return None
     lead = "The middleware takes its objects from pools of fixed size; these files set those that the application needs in the build."
-    files = [Listing(name, text.splitlines()) for name, text in texts_of(assembly).items() if not name.endswith(".h")]
-    return Section("pools", "Static pools", lead, [_pools(assembly), _memory(assembly.memory), *files])
+    return Section("pools", "Static pools", lead, blocks)
 
 
 def generate_document(result: GenerateResult) -> ResultDocument:

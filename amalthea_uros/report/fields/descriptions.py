@@ -8,13 +8,14 @@ from amalthea_uros.perf.executors import Executor
 from amalthea_uros.report.fields.declaration import declare
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
+from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.creation_traffic import CreationTraffic, SentForCreation
 from amalthea_uros.uros.generated_options import values_of
 from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory import MemoryDemand
 
 
-def _messages(result: BuildResult) -> list[dict[str, Any]]:
+def _messages(assembly: Assembly) -> list[dict[str, Any]]:
     return [
         {
             "topic": item.message.topic,
@@ -24,8 +25,25 @@ def _messages(result: BuildResult) -> list[dict[str, Any]]:
             "frames": item.frames,
             "bus_time_ps": item.transmission_time,
         }
-        for item in result.assembly.messages
+        for item in assembly.messages
     ]
+
+
+def _pools(assembly: Assembly) -> list[dict[str, Any]]:
+    return [
+        {"option": pool.name, "needed": pool.needed, "available": pool.available, "stated": pool.is_stated}
+        for pool in assembly.pools
+    ]
+
+
+def _of_controller(assembly: Assembly) -> dict[str, Any]:
+    """The middleware of a controller of a robot."""
+    return {
+        "messages": _messages(assembly),
+        "initialisation": assembly.initialisation,
+        "pools": _pools(assembly),
+        "memory": assembly.memory,
+    }
 
 
 def _options(result: GenerateResult) -> list[dict[str, Any]]:
@@ -54,16 +72,11 @@ declare(
     ),
     ("placement", "assembly.placement"),
     ("executors", "assembly.system.executors"),
-    ("messages", _messages),
+    ("messages", lambda result: _messages(result.assembly)),
     ("initialisation", "assembly.initialisation"),
-    (
-        "pools",
-        lambda result: [
-            {"option": pool.name, "needed": pool.needed, "available": pool.available, "stated": pool.is_stated}
-            for pool in result.assembly.pools
-        ],
-    ),
-    ("memory", "assembly.memory"),
+    ("pools", lambda result: _pools(result.assembly)),
+    ("memory", lambda result: None if result.assembly.controllers else result.assembly.memory),
+    ("controllers", lambda result: {name: _of_controller(each) for name, each in result.assembly.controllers.items()}),
     "findings",
 )
 declare(
