@@ -20,7 +20,7 @@ from amalthea_uros._internal.csv_cells import original_text, safe_cell
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.files import TracePlace, opened_text
 from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, NumberedTable, Row, note_of, numbered_table
-from amalthea_uros.trace.sinks import Encoder, WriteOptions
+from amalthea_uros.trace.sinks import Encoder
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 
 HEADER = ["time_ps", "event", "source_kind", "source", "source_instance", "target_kind", "target", "target_instance", "note"]
@@ -105,10 +105,10 @@ _NAMES = {int(kind): name for name, kind in EVENT_NAMES.items()}
 
 
 class CsvEncoder(Encoder):
-    """Makes the lines of a CSV file; it has no options."""
+    """Makes the lines of a CSV file."""
 
-    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
-        super().__init__(entities, options)
+    def __init__(self, entities: Sequence[Entity]) -> None:
+        super().__init__(entities)
         self._fields: list[str] = []
 
     def begin(self) -> bytes:
