@@ -21,11 +21,10 @@ from amalthea_uros.trace.reading import (
     MAX,
     EntityIndex,
     LineReader,
-    NumberedTable,
     Pattern,
     Row,
     note_of,
-    numbered_table,
+    table_of,
 )
 from amalthea_uros.trace.sinks import Encoder
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
@@ -181,15 +180,15 @@ class BtfReader(LineReader):
         self._header = BtfHeader(self._index, self._problems)
         self._numbers: dict[tuple[str, str, str, str], int] = {}
 
-    def numbered(self) -> Iterator[NumberedTable]:
-        """The events, with the number of the line of each."""
+    def __iter__(self) -> Iterator[EventTable]:
+        """The events, in consecutive tables."""
         with opened_text(self._path, self._problems) as stream:
             line = 1
             while lines := list(islice(stream, BLOCK)):
                 rows = self._rows(lines, line)
                 line += len(lines)
                 if rows:
-                    yield numbered_table(rows, self._patterns, self._index, self._header.scale)
+                    yield table_of(rows, self._patterns, self._index, self._header.scale)
 
     def _rows(self, lines: Sequence[str], start: int) -> list[Row]:
         """The rows of some lines, of which the first one has a number; what is unusual is left to other methods."""
@@ -202,7 +201,7 @@ class BtfReader(LineReader):
                 time, job, instance = int(time_field), int(job_field or 0), int(instance_field or 0)
             except ValueError:
                 if not self._read_other(line, text) and self._patterns:
-                    rows.append(self._gap_row(last, line))
+                    rows.append(self._gap_row(last))
                 limit = MAX // self._header.scale
                 continue
             pattern = numbers.get((source, kind, target, event))
@@ -210,10 +209,10 @@ class BtfReader(LineReader):
                 pattern = self._new_pattern(source, kind, target, event, TracePlace(line, None, text.rstrip(BLANKS)))
             if not (last <= time <= limit and -1 <= job <= MAX and -1 <= instance <= MAX):
                 self._report_range(time, last, TracePlace(line, 1, text.rstrip(BLANKS)))
-                rows.append(self._gap_row(last, line))
+                rows.append(self._gap_row(last))
             elif pattern != _LEFT_OUT:
                 last = time
-                rows.append((time, pattern, job, instance, self._note(notes[0], pattern) if notes else NO_NOTE, line))
+                rows.append((time, pattern, job, instance, self._note(notes[0], pattern) if notes else NO_NOTE))
         self._last = last
         return rows
 
@@ -286,11 +285,9 @@ def _is_number(field: str) -> bool:
     return True
 
 
-# Writing: with names or with numbers for entities; events of chains are left out.
+# Writing: events of chains are left out.
 
 
-#: The types in files, at the places of their numbers.
-_TYPES: list[EntityKind] = [kind for kind in EntityKind if kind is not EntityKind.CHAIN]
 _KNOWN = np.array(sorted(WORDS))
 _ENDINGS = {int(kind): f",{word}\n" for kind, word in WORDS.items()}
 
@@ -333,7 +330,7 @@ class BtfEncoder(Encoder):
         lines = []
         for entity in self._entities[len(self._names) :]:
             name = escape(entity.name)
-            if entity.kind in _TYPES:
+            if entity.kind is not EntityKind.CHAIN:
                 lines.append(f"#entityTypeMapping {entity.kind} {name}")
             self._names.append(name)
             self._targets.append(f"{entity.kind},{name},")

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from state_charts import check_trace
 from traces import encoded, other_btf, random_trace
 
 from amalthea_uros.trace.readers import BY_NAME, open_trace
 from amalthea_uros.trace.sinks import WRITERS, open_sink
-from amalthea_uros.trace.state_charts import check_trace
 
 BREAKERS = [
     b"\n",
