@@ -144,21 +144,8 @@ def compile_report(
         is_duration_chosen=duration is None,
         check=None if model is None else check_input(model, next(iter(_files(opened)), Path())),
         findings=tuple(dict.fromkeys(unsuppressed(findings))),
-        answer=first_answer(_analyzed(changed, analysis)),
+        answer=first_answer(AnalysisResult.of(changed, analysis)),
         assembly=None if opened.assembly is None else with_analysed_storage(opened.assembly, before or analysis),
-    )
-
-
-def _analyzed(changed: ChangedSystem, analysis: Analysis) -> AnalysisResult:
-    """The analysis as a result, of which changes are tried."""
-    return AnalysisResult(
-        paths=(),
-        task_periods=changed.opened.task_periods,
-        changed=changed,
-        system=changed.system,
-        settings=changed.settings,
-        analysis=analysis,
-        findings=(),
     )
 
 
