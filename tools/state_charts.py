@@ -21,7 +21,6 @@ from amalthea_uros.trace.vocabulary import (
     ON_CORE,
     PROCESS,
     PROCESSES,
-    SEMAPHORE,
     SOURCES,
     WORDS,
     chart,
@@ -34,6 +33,20 @@ RUNNABLE = chart(
         EventKind.RUNNABLE_SUSPEND: ("running", "suspended"),
         EventKind.RUNNABLE_RESUME: ("suspended", "running"),
         EventKind.RUNNABLE_TERMINATE: ("running", "terminated"),
+    }
+)
+
+#: Semaphores (section 2.3.7); those of spinlocks are a part of it (section 2.3.8).
+SEMAPHORE = chart(
+    {
+        EventKind.USED: ("free used", "used"),
+        EventKind.LOCK: ("free", "full"),
+        EventKind.LOCK_USED: ("used", "full"),
+        EventKind.OVERFULL: ("full overfull", "overfull"),
+        EventKind.FULL: ("overfull", "full"),
+        EventKind.UNLOCK_FULL: ("full", "used"),
+        EventKind.FREE: ("used", "free"),
+        EventKind.UNLOCK: ("full", "free"),
     }
 )
 

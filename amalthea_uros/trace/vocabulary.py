@@ -86,20 +86,11 @@ PROCESS = chart(
 #: The states of a process in which it is on a core.
 ON_CORE = frozenset({"running", "polling"})
 
-#: Semaphores (section 2.3.7); those of spinlocks are a part of it (section 2.3.8).
-SEMAPHORE = chart(
-    {
-        EventKind.USED: ("free used", "used"),
-        EventKind.LOCK: ("free", "full"),
-        EventKind.LOCK_USED: ("used", "full"),
-        EventKind.OVERFULL: ("full overfull", "overfull"),
-        EventKind.FULL: ("overfull", "full"),
-        EventKind.UNLOCK_FULL: ("full", "used"),
-        EventKind.FREE: ("used", "free"),
-        EventKind.UNLOCK: ("full", "free"),
-    }
+_STATES_OF_SEMAPHORES = (
+    EventKind.LOCK,
+    EventKind.UNLOCK,
+    *(kind for kind in EventKind if EventKind.USED <= kind <= EventKind.FREE),
 )
-
 _BY_STIMULUS = (EntityKind.STIMULUS, *PROCESSES)
 _BY_PROCESS_OR_STIMULUS = (*PROCESSES, EntityKind.STIMULUS)
 
@@ -115,7 +106,7 @@ SOURCES: dict[EventKind, tuple[EntityKind, ...]] = {
     EventKind.WRITE: _BY_PROCESS_OR_STIMULUS,
     **dict.fromkeys(EVENTS[EntityKind.SEMAPHORE].values(), PROCESSES),
     # It causes the changes of its state itself.
-    **dict.fromkeys(SEMAPHORE, (*PROCESSES, EntityKind.SEMAPHORE)),
+    **dict.fromkeys(_STATES_OF_SEMAPHORES, (*PROCESSES, EntityKind.SEMAPHORE)),
     **dict.fromkeys(OS_EVENTS, PROCESSES),
     EventKind.SET_EVENT: _BY_PROCESS_OR_STIMULUS,
     EventKind.SCHEDULE: (EntityKind.SCHEDULER,),
