@@ -198,14 +198,14 @@ class Profile(ABC):
         return (*known, *(_thread(ThreadData(name=task.name, does="receives messages"), task) for task in tasks.values()))
 
     @property
-    @abstractmethod
     def slots(self) -> int | None:
         """The number of messages that can be stored for all handles together; None for no limit."""
+        return None
 
     @property
-    @abstractmethod
     def slot_size(self) -> int | None:
         """Bytes of memory that each of these slots takes; None without slots."""
+        return None
 
     @property
     @abstractmethod
@@ -222,14 +222,14 @@ class Profile(ABC):
         return None
 
     @property
-    @abstractmethod
     def recovery(self) -> Recovery | None:
-        """How reliable messages that were lost are sent again; None if it does not care for losses."""
+        """How reliable messages that were lost are sent again; None if it leaves that to the transport."""
+        return None
 
     @property
-    @abstractmethod
     def buffers(self) -> int | None:
         """The number of buffers in which reliable messages wait for their acknowledgement, a part in each; None for no limit."""
+        return None
 
     @property
     @abstractmethod
