@@ -18,11 +18,11 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 1076,
+    "_internal": 1079,
     "_version": 1,
     "am": 2,
     "analyze": 9206,
-    "bridge": 2877,
+    "bridge": 2876,
     "cli": 2611,
     "compare": 3829,
     "design": 6652,
@@ -45,11 +45,11 @@ LINES = {
     "simulate": 8643,
     "source": 3550,
     "spec": 3019,
-    "timing": 5711,
+    "timing": 5708,
     "trace": 5073,
     "units": 206,
-    "uros": 7870,
-    "validate": 3674,
+    "uros": 7763,
+    "validate": 3267,
     "xmi": 8579,
 }
 

@@ -126,10 +126,9 @@ def _room(profile: Profile, memory: MemoryDemand) -> int | None:
 
 def _with_smaller(mtu: Option, profile: Profile, application: Application, memory: MemoryDemand) -> Iterator[tuple[int, int]]:
     """Half the MTU, half of that, and so on, as long as all messages fit in it and in the buffers of the streams."""
-    size, middleware = mtu.available // 2, profile.middleware
+    size = mtu.available // 2
     while size:
-        limits = middleware.limits.model_copy(update={mtu.name: mtu.described(size)})
-        other = profile.configured(middleware.model_copy(update={"limits": limits}))
+        other = profile.with_options({mtu.name: size})
         # Of the settings, the application needs an MTU and buffers of streams.
         if any(each.is_exceeded for each in other.options(application) if each.role is OptionRole.SETTING):
             return

@@ -15,7 +15,7 @@ from amalthea_uros.perf.executors import WaitBehaviour
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.network import Direction, Recovery
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
+from amalthea_uros.spec.middleware import Middleware, MiddlewareTask, PoolSizes
 from amalthea_uros.spec.profiles import ProfileData, ThreadData
 from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.application.messages import MessageKind
@@ -146,6 +146,14 @@ class Profile(ABC):
     def configured(self, middleware: Middleware) -> Self:
         """The same middleware with other settings."""
         return replace(self, middleware=middleware)
+
+    def with_options(self, values: Mapping[str, int]) -> Self:
+        """The same middleware with other values of build options, as far as a description can state them."""
+        stated = {
+            name: self.option_table[name].described(value) for name, value in values.items() if name in PoolSizes.model_fields
+        }
+        limits = self.middleware.limits.model_copy(update=stated)
+        return self.configured(self.middleware.model_copy(update={"limits": limits}))
 
     @property
     def name(self) -> str:
