@@ -38,7 +38,7 @@ LINES = {
     "measure": 1124,
     "metamodel": 3291,
     "names": 17,
-    "perf": 1821,
+    "perf": 1822,
     "platforms": 0,
     "report": 8675,
     "services": 2675,
@@ -48,7 +48,7 @@ LINES = {
     "timing": 5708,
     "trace": 5073,
     "units": 206,
-    "uros": 7763,
+    "uros": 7761,
     "validate": 3267,
     "xmi": 8579,
 }
