@@ -2,9 +2,8 @@ import gc
 import os
 import shutil
 import signal
-import sys
-from pathlib import Path
 
+import compiled_code  # noqa: F401 - before what it keeps compiled
 from effort import IS_THOROUGH, PROFILE, THOROUGH, USUAL, sample
 from hypothesis import HealthCheck, Phase, settings
 
@@ -30,14 +29,6 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 # Colours and widths are what their tests ask for; Python's `readline` states the size of a terminal for the workers.
 for name in ("NO_COLOR", "FORCE_COLOR", "COLUMNS", "LINES"):
     os.environ.pop(name, None)
-
-# What Python and numba compile is kept in one folder, for the other workers, for the commands that tests start, and for the next run.
-# This holds also where Python shall not write beside the sources: without it, each command compiles the package again.
-COMPILED = Path(__file__).parents[1] / "build" / "compiled"
-os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-os.environ.setdefault("PYTHONPYCACHEPREFIX", str(COMPILED / "python"))
-os.environ.setdefault("NUMBA_CACHE_DIR", str(COMPILED / "numba"))
-sys.dont_write_bytecode, sys.pycache_prefix = False, os.environ["PYTHONPYCACHEPREFIX"]
 
 
 # Collecting tests makes many objects and no garbage. Later, garbage is collected as rarely as by the command. The objects are not

@@ -5,6 +5,7 @@ A usual run has fewer examples of each property, and a sample of the published m
 
 import os
 from collections.abc import Hashable, Iterable, Iterator, Sequence
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any, TypeVar
@@ -44,8 +45,13 @@ def sample(items: Iterable[Any]) -> Iterator[Any]:
 
 
 def _name(item: Any) -> Hashable:
-    # Relative, so that the sample is the same wherever the project is.
-    return str(item.path.relative_to(item.config.rootpath)), getattr(item, "originalname", item.name)
+    return _relative(item.path, item.config.rootpath), getattr(item, "originalname", item.name)
+
+
+@cache
+def _relative(path: Path, root: Path) -> str:
+    """The path of tests as a text, so that the sample is the same wherever the project is."""
+    return str(path.relative_to(root))
 
 
 def _is_published(item: Any) -> bool:
