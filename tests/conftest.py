@@ -2,8 +2,11 @@ import gc
 import os
 import shutil
 import signal
+from functools import partial
+from types import SimpleNamespace
 
 import compiled_code  # noqa: F401 - before what it keeps compiled
+import pytest
 from effort import IS_THOROUGH, PROFILE, THOROUGH, USUAL, sample
 from hypothesis import HealthCheck, Phase, settings
 
@@ -41,6 +44,16 @@ def pytest_collection_finish():
     gc.enable()
 
 
+@pytest.fixture(autouse=True, scope="session")
+def young_garbage():
+    """A campaign ends with a collection of garbage, which takes a second for the objects of all tests; its own ones are young."""
+    from amalthea_uros.design.campaign import executors
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(executors, "gc", SimpleNamespace(collect=partial(gc.collect, 1)))
+        yield
+
+
 def pytest_collection_modifyitems(config, items):
     """Leave out what a usual run does not try; the first worker begins with what takes long."""
     if not IS_THOROUGH:
@@ -49,6 +62,11 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=[item for item in items if item not in known])
         items[:] = kept
     items.sort(key=lambda item: item.get_closest_marker("early") is None)
+
+
+def pytest_sessionfinish():
+    """Let pytest search no garbage, five times among all objects, in a process that ends."""
+    gc.freeze()
 
 
 def pytest_unconfigure(config):
