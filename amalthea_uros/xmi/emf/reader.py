@@ -34,26 +34,14 @@ _KEPT = "Unknown content is ignored, but preserved when the file is saved."
 _new = object.__new__
 _append = list.append
 _new_list = list.__new__
-_tuple: Any = tuple.__new__  # makes a named tuple without its own constructor, which is slower
 
 StartHandler = Callable[[str, dict[str, str]], None]
 EndHandler = Callable[[str], None]
 
 
-class PendingReference(NamedTuple):
-    """A reference as text, to be resolved when all documents are read.
-
-    Attributes
-    ----------
-    texts : the ids, in order
-    is_href : whether it is written as `href` elements rather than as an attribute
-    """
-
-    holder: Element
-    feature: FeaturePlan
-    texts: list[str]
-    is_href: bool
-
+#: A reference to be resolved when all documents are read: the object that refers, the feature, the ids in their order, and whether
+#: they are written as `href` elements rather than as an attribute. A plain tuple, because one is made for every reference.
+PendingReference = tuple[Element, FeaturePlan, list[str], bool]
 
 #: An open element: its object (None for an `href` element), what was read of it so far (its instance dictionary, with the texts of
 #: its references until they are resolved), its possible child elements, and its index in document order (else -1). A plain tuple,
@@ -282,7 +270,7 @@ class _ModelReader:
                     if len(texts) > 1:
                         texts = self.several(attribute, value, texts)
                     if texts:
-                        references[attribute.wave].append(_tuple(PendingReference, (element, attribute, texts, False)))
+                        references[attribute.wave].append((element, attribute, texts, False))
                         values[attribute.name] = value
                 elif attribute.parsed is None:
                     values[attribute.name] = value
@@ -333,7 +321,7 @@ class _ModelReader:
         texts = held.get(feature.name)
         if texts is None:
             texts = held[feature.name] = []
-            self.references[feature.wave].append(PendingReference(holder, feature, texts, True))
+            self.references[feature.wave].append((holder, feature, texts, True))
         elif isinstance(texts, str) or not feature.many:
             self.start_duplicate(feature)
             return

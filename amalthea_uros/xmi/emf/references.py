@@ -70,7 +70,7 @@ class _Resolver:
         #: Ids that several objects share; a reference means the first one in its own document.
         self.shared: dict[str, list[Element]] = {}
         self.suffixes: dict[type[Element], str] = {}
-        self.in_namespace = {pending.holder for result in results for pending in result.references[0]}
+        self.in_namespace = {holder for result in results for holder, *_ in result.references[0]}
         #: The unique name of every object that can be referred to.
         self.names: dict[Element, str] = {}
         self.proxies: dict[tuple[str, type[Element]], Element] = {}
@@ -89,7 +89,8 @@ class _Resolver:
             if suffix is None:
                 suffix = suffixes[cls] = "" if has_prefix(cls) else TYPE_MARK + cls.__name__
             # The usual case; the general function takes three times as long.
-            name = encode(element.name) + suffix if suffix and element not in in_namespace else unique_name(element)  # type: ignore[attr-defined]
+            is_usual = suffix and element not in in_namespace
+            name = encode(element.__dict__.get("name")) + suffix if is_usual else unique_name(element)
             names[element] = name
             first = by_id.setdefault(name, element)
             if first is not element:
