@@ -125,7 +125,10 @@ def _standard_input() -> bytes:
 
 def read_up_to(stream: IO[bytes], limit: int, block: int = _BLOCK) -> bytes:
     """The content of a stream, at most `limit` bytes of it, in parts of `block` bytes."""
-    found = io.BytesIO()  # which gives its content without a copy
+    first = stream.read(min(max(limit, 0), block))
+    limit -= len(first)
+    found = io.BytesIO(first)  # which gives its content without a copy, and copies this only if more is written
+    found.seek(0, io.SEEK_END)
     while limit > 0 and (part := stream.read(min(limit, block))):
         limit -= found.write(part)
     return found.getvalue()

@@ -28,6 +28,7 @@ _COLUMNS = {
 }
 _STATES = {int(kind): (before, after) for kind, (before, after) in PROCESS.items()}
 _UNACTIVATED = -1
+_EVERYWHERE: Flags | slice = slice(None)
 
 
 class _RunningJob:
@@ -281,14 +282,15 @@ def _series(kind: MeasuredKind, name: str, ended: _EndedJobs, begin: str) -> Ite
     jobs, follows = _table(ended)
     is_activated, is_known = jobs[JobColumn.ACTIVATION] != _UNACTIVATED, follows[1:]
     are_activated = is_activated[1:] & is_activated[:-1] & is_known
+    activated, known, both_activated = _places(is_activated), _places(is_known), _places(are_activated)
     whole = zip(OWN, own_times(jobs), strict=True)
     between = zip(BETWEEN, times_between(jobs[:, :-1], jobs[:, 1:]), strict=True)
-    found = [(metric, row, jobs[JobColumn.END], np.ones(len(follows), bool), is_activated) for metric, row in whole]
-    found += [(metric, row, jobs[JobColumn.END, 1:], is_known, are_activated) for metric, row in between]
+    found = [(metric, row, jobs[JobColumn.END], _EVERYWHERE, activated) for metric, row in whole]
+    found += [(metric, row, jobs[JobColumn.END, 1:], known, both_activated) for metric, row in between]
     method = "from the events of jobs" if kind is MeasuredKind.PROCESS else "from the events of runnables and their jobs"
-    for metric, row, ends, is_there, is_from_activation in found:
-        is_used = is_from_activation if metric in FROM_ACTIVATION else is_there
-        values = row[is_used]
+    for metric, row, ends, places, places_from_activation in found:
+        used = places_from_activation if metric in FROM_ACTIVATION else places
+        values = row[used]
         if len(values):
             yield Series(
                 kind=kind,
@@ -296,11 +298,16 @@ def _series(kind: MeasuredKind, name: str, ended: _EndedJobs, begin: str) -> Ite
                 quantity=metric,
                 statistics=statistics_of(values),
                 values=values,
-                times=ends[is_used],
+                times=ends[used],
                 counts=counts,
                 method=method,
                 begin=begin,
             )
+
+
+def _places(is_used: Flags) -> Flags | slice:
+    """What selects some values: of all of them, no copy is needed."""
+    return _EVERYWHERE if is_used.all() else is_used
 
 
 def _table(ended: _EndedJobs) -> tuple[Numbers, Flags]:

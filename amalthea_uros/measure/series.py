@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from fractions import Fraction
+from functools import lru_cache
 from math import ceil, log, sqrt
 from typing import Final
 
@@ -22,10 +23,6 @@ _MEDIAN = Fraction(1, 2)
 _FEW = 100
 #: The percentiles that are computed where all values are known.
 PERCENTILES = (_MEDIAN, Fraction(9, 10), Fraction(95, 100), Fraction(99, 100), Fraction(999, 1000))
-#: Each with its parts, and the least number of values of which it is computed.
-_PERCENTILES = [
-    (each, each.numerator, each.denominator, 1 if each is _MEDIAN else int(1 / (1 - each)) + 1) for each in PERCENTILES
-]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,19 +69,20 @@ def statistics_of(values: Numbers) -> TimeStatistics:
         raise InvalidArgumentError("there are no values, so they have no statistics")
     ordered, total, squares = _of_few(values) if len(values) <= _FEW else _of_many(values)
     count, first = len(ordered), int(ordered[0])
-    percentiles = {
-        share: int(ordered[-(-numerator * count // denominator) - 1])
-        for share, numerator, denominator, least in _PERCENTILES
-        if count >= least
-    }
     return TimeStatistics(
         count=count,
         min=first,
         mean=Fraction(first * count + total, count),
         max=int(ordered[-1]),
         variance=Fraction(squares * count - total * total, count * count),
-        percentiles=percentiles,
+        percentiles={share: int(ordered[place]) for share, place in _places(count)},
     )
+
+
+@lru_cache
+def _places(count: int) -> Sequence[tuple[Fraction, int]]:
+    """The percentiles that are computed of so many values, and their places in the order of the values."""
+    return [(each, ceil(each * count) - 1) for each in PERCENTILES if each == _MEDIAN or count > 1 / (1 - each)]
 
 
 def _of_few(values: Numbers) -> tuple[Sequence[int], int, int]:

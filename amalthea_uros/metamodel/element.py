@@ -14,7 +14,7 @@ stays small.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Self, SupportsIndex, TypeVar, dataclass_transform
 
 from amalthea_uros._internal.records import dataclass, field
@@ -231,6 +231,10 @@ class Element:
         while element is not None and not isinstance(element, cls):
             element = element._container
         return element
+
+
+#: `set_container(part, holder)`: for a new object of which its holder knows already.
+set_container: Callable[[Element, Element | None], None] = Element.__dict__["_container"].__set__
 
 
 def extras_of(element: Element) -> Extras:

@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import IO
 
+from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.documents import DOCUMENTS
 from amalthea_uros.report.fields import FIELDS
@@ -43,7 +44,8 @@ def formats_for(result: str) -> list[str]:
 def write(name: str, result: object, stream: IO[str]) -> None:
     """Write a result in a format."""
     module, _, function = FORMATS[name][0].partition(".")
-    getattr(import_module(f"amalthea_uros.report.writers.{module}"), function)(result, stream)
+    with paused_garbage_collection():
+        getattr(import_module(f"amalthea_uros.report.writers.{module}"), function)(result, stream)
 
 
 def format_of(path: Path) -> str:

@@ -297,8 +297,9 @@ def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
 
 def _in_loops(facts: CodeFacts) -> set[Location]:
     """Where what the loops of the description have is."""
-    spun = {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
-    return spun | {item.place for sender in facts.senders for item in sender.items}
+    # Those of spins in the same loop are the same tuple.
+    loops = {id(spin.items): spin.items for executor in facts.executors.values() for spin in executor.spins}
+    return {item.place for items in (*loops.values(), *(sender.items for sender in facts.senders)) for item in items}
 
 
 def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:

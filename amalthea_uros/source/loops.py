@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
+from amalthea_uros.diagnostics import Location
 from amalthea_uros.source.entities import CREATIONS
 from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
 from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind
@@ -28,22 +29,24 @@ _USES = frozenset({*SPIN_KINDS, *SENDS, "rclc_action_publish_feedback", "rclc_ac
 
 def add_spins(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
     """Add to each executor how it spins, with everything else that is in the same loop."""
-    creations = Creations(calls)
+    loops = _LoopItems(facts, calls)
+    known: set[tuple[str, Location]] = set()
     for call in calls:
         if call.name in SPIN_KINDS and (executor := executor_of(facts, call)) is not None:
-            if any(spin.place == call.place for spin in executor.spins):
+            if (executor.key, call.place) in known:
                 continue
-            executor.spins.append(_spin(facts, call, calls, creations))
+            known.add((executor.key, call.place))
+            executor.spins.append(_spin(call, loops))
 
 
-def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall], creations: Creations) -> Spin:
+def _spin(call: FunctionCall, loops: _LoopItems) -> Spin:
     kind, is_loop = SPIN_KINDS[call.name], is_repeated(call)
     return Spin(
         kind=kind,
         time=_timeout(call),
         place=call.place,
         # A sleep before an endless loop, or in setup(), is not part of the iteration.
-        items=tuple(_items(facts, call, calls, creations)) if kind is SpinKind.SOME and is_loop else (),
+        items=loops.around(call) if kind is SpinKind.SOME and is_loop else (),
         is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or is_loop,
     )
 
@@ -51,14 +54,14 @@ def _spin(facts: CodeFacts, call: FunctionCall, calls: Sequence[FunctionCall], c
 def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
     """Add the loops that send outside of callbacks, and in which no executor spins."""
     published = {place for places in facts.publishes.values() for place in places.values()}
-    creations = Creations(calls)
+    loops = _LoopItems(facts, calls)
     known = published | {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
     for call in calls:
         sender = call.argument(0)
         is_sending = call.name in SENDS and sender is not None
         if not is_sending or not is_repeated(call) or call.root is None or call.place in known:
             continue
-        items = tuple(_items(facts, replace(call, loops=_loop_of_thread(call, creations)), calls, creations))
+        items = loops.around(replace(call, loops=_loop_of_thread(call, loops.creations)))
         known |= {item.place for item in items}
         if _add_to_spins(facts, items):
             continue
@@ -139,23 +142,36 @@ def _timeout(call: FunctionCall) -> Time | None:
     return Time(number * NANOSECOND) if number is not None and number >= 0 else None
 
 
-def _items(facts: CodeFacts, spin: FunctionCall, calls: Sequence[FunctionCall], creations: Creations) -> Iterator[CodeLoopItem]:
-    """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
-    created = creations.of(spin)
-    for call in calls:
-        if call.root is not spin.root or call.loops[: len(spin.loops)] != spin.loops or call.excludes(spin):
-            continue
-        if is_only_at_creation(call, spin, created) or is_lock(call, calls):
-            continue
-        item = _item(facts, call)
-        if item is None:
-            continue
-        if call.loops != spin.loops:
-            yield replace(item, time=None, note="in a loop of its own: how often per iteration is unknown")
-        elif call.always_with(spin) or item.kind not in _TIMED:
-            yield item
-        else:
-            yield replace(item, time=None, note="not in each iteration")
+class _LoopItems:
+    """The items of loops, those of each loop found once, because thousands of calls may spin or send in it."""
+
+    def __init__(self, facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
+        self.creations = Creations(calls)
+        self._every = [(call, item) for call in calls if (item := _item(facts, call)) is not None and not is_lock(call, calls)]
+        self._found: dict[tuple[object, ...], tuple[CodeLoopItem, ...]] = {}
+
+    def around(self, user: FunctionCall) -> tuple[CodeLoopItem, ...]:
+        """The items in the same loop as a call that spins or sends."""
+        used = user.argument(0)
+        key = (id(user.root), user.loops, user.conditions, None if used is None else used.key)
+        if key not in self._found:
+            self._found[key] = tuple(self._items(user))
+        return self._found[key]
+
+    def _items(self, user: FunctionCall) -> Iterator[CodeLoopItem]:
+        """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
+        created = self.creations.of(user)
+        for call, item in self._every:
+            if call.root is not user.root or call.loops[: len(user.loops)] != user.loops or call.excludes(user):
+                continue
+            if is_only_at_creation(call, user, created):
+                continue
+            if call.loops != user.loops:
+                yield replace(item, time=None, note="in a loop of its own: how often per iteration is unknown")
+            elif call.always_with(user) or item.kind not in _TIMED:
+                yield item
+            else:
+                yield replace(item, time=None, note="not in each iteration")
 
 
 _TIMED = (CodeLoopKind.SLEEP, CodeLoopKind.BUSY_WAIT)

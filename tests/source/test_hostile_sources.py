@@ -32,6 +32,13 @@ REPEATED = {
 }
 
 
+def test_an_executor_that_spins_often_in_a_loop_is_read_in_time_for_its_size(tmp_path):
+    created = "rclc_executor_init(&executor, &support.context, 1, &allocator);\n"
+    spin = "rclc_executor_spin_some(&executor, 1000000);\n"
+    programs = [PROGRAM % f"{created}for (;;) {{ {count * spin} }}" for count in (20, 40, 80)]
+    assert growth(lambda program: imported(tmp_path, program), programs) < 2.8
+
+
 @pytest.mark.parametrize("line", REPEATED)
 def test_the_effort_for_repeated_lines_stays_small(line, tmp_path):
     created = "rclc_executor_init(&executor, &support.context, 1, &allocator);\n"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros.compare.measured.receptions import receptions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import UnknownError
@@ -124,7 +125,8 @@ def measured_by(reader: TraceReader, path: Path, window: MeasurementWindow, begi
     if jobs.illegal:
         message = f"{jobs.illegal:,} events that the state of their job does not allow; these jobs are not measured"
         findings.append(Finding("MEA004", Severity.WARNING, message, Location(path), "Check the trace for lost events."))
-    series = (*jobs.series(names), *chains.series(names))
+    with paused_garbage_collection():
+        series = (*jobs.series(names), *chains.series(names))
     for name in chains.ambiguous:
         message = (
             f"the steps of the chain {name!r} are of several routes, which the trace does not tell apart; it is not measured"

@@ -7,6 +7,7 @@ of the text (Boucher and Anderson, "Trojan Source", 2021), and bytes of a file n
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import IO, Any
 
 #: Control and format characters, surrogates, and what XML 1.0 does not allow (section 2.2).
@@ -33,6 +34,13 @@ def visible(text: str) -> str:
     'a\\nb\\x1b[31m\\u202e'
     """
     return text if text.isascii() and text.isprintable() else _HIDDEN.sub(_escape, text)
+
+
+def visible_cells(cells: Iterable[str]) -> list[str]:
+    """The visible texts of a row; most rows have nothing to hide, which is sooner known of all their cells together."""
+    row = list(cells)
+    whole = "".join(row)
+    return row if whole.isascii() and whole.isprintable() else list(map(visible, row))
 
 
 def message_line(text: str) -> str:

@@ -34,6 +34,7 @@ _RULE_OF_THREE = 3
 def row(series: Series) -> tuple[str, ...]:
     """The figures of a series, for `COLUMNS`."""
     found = series.statistics
+    std = None if found is None else found.std
     name = (series.name, series.quantity.replace("_", " "))
     if found is None:
         return (*name, "0", *["-"] * (len(COLUMNS) - 3))
@@ -43,7 +44,7 @@ def row(series: Series) -> tuple[str, ...]:
         rounded_time_text(found.min, Rounding.DOWN),
         rounded_time_text(found.mean, Rounding.NEAREST),
         rounded_time_text(found.max, Rounding.UP),
-        "-" if found.std is None else _deviation(found.std),
+        "-" if std is None else _deviation(std),
         rounded_time_text(found.peak_to_peak, Rounding.UP),
         rounded_time_text(found.percentiles[P99], Rounding.UP) if P99 in found.percentiles else "-",
         "-" if found.variance is None else _square(found.variance),
@@ -80,9 +81,9 @@ def period_rows(measurement: Measurement) -> Iterator[tuple[str, ...]]:
 
 def count_rows(measurement: Measurement) -> Iterator[tuple[str, ...]]:
     """Of each object with events that gave no value: how many of which kind."""
-    seen = set()
+    seen, none = set(), Counts()
     for series in measurement.series:
-        if series.name not in seen and series.counts != Counts():
+        if series.name not in seen and series.counts != none:
             seen.add(series.name)
             counts = series.counts
             numbers = (counts.incomplete, counts.lost, counts.duplicated, counts.reordered)

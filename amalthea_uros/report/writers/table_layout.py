@@ -60,6 +60,8 @@ def table_width(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> int:
 
 def with_footnotes(headings: Sequence[str], cells: Sequence[Sequence[str]], width: int, notes: Footnotes) -> list[list[str]]:
     """The cells with numbers in the place of remarks that make a table wider than a page, or that many rows have."""
+    if not any(name in _REMARKS for name in headings):
+        return [list(row) for row in cells]
     others = [
         GAP if name in _REMARKS else GAP + column for name, column in zip(headings, column_widths(headings, cells), strict=True)
     ]

@@ -12,7 +12,7 @@ from typing import IO
 from amalthea_uros._internal.records import replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.report.basics.display import is_coloured, is_standard
-from amalthea_uros.report.basics.escape import output_line, visible
+from amalthea_uros.report.basics.escape import output_line, visible, visible_cells
 from amalthea_uros.report.writers.table_layout import (
     GAP,
     SEVERAL,
@@ -159,7 +159,7 @@ class Terminal:
         right : columns that are aligned to the right
         spare : columns that are left out where there is no room for them
         """
-        cells = [[visible(str(cell)) for cell in row] for row in rows]
+        cells = [visible_cells(map(str, row)) for row in rows]
         before, missing = len(self.notes), list[str]()
         cells = with_footnotes(headings, cells, self.width or WIDTH_ELSEWHERE, self.notes)
         if self.width is not None:
@@ -172,13 +172,13 @@ class Terminal:
             right, whole = ([number for number, index in enumerate(kept) if index in some] for some in (right, whole))
             cells = folded(headings, [[row[index] for index in kept] for row in cells], whole, self.width)
         widths = column_widths(headings, cells)
+        layout = (" " * GAP).join(f"%{'' if i in right else '-'}{width or ''}s" for i, width in enumerate(widths))
         for is_heading, row in [(True, list(headings)), *((False, row) for row in cells)]:
-            for line in zip_longest(*(cell.split("\n") for cell in row), fillvalue=""):
-                padded = [
-                    cell.rjust(width) if i in right else cell.ljust(width)
-                    for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-                ]
-                text = (" " * GAP).join(padded).rstrip()
+            lines = (
+                zip_longest(*(cell.split("\n") for cell in row), fillvalue="") if any("\n" in cell for cell in row) else [row]
+            )
+            for line in lines:
+                text = (layout % tuple(line)).rstrip()
                 self._write((" " * GAP + (self.style(text, "2") if is_heading else text)).rstrip())
         if missing:
             self.line(f"{' ' * GAP}(no room for: {', '.join(missing)})")

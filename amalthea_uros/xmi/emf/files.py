@@ -124,8 +124,9 @@ def _read_text(path: Path, max_size: int) -> FileText:
 
 def _check_elements(path: Path, text: str, limit: int) -> None:
     """Refuse a model with too many elements before any object is made: a hundred kilobytes of ZIP may hold ten million."""
-    # Comments count too, since they are kept.
-    if text.count("<") - text.count("</") > limit:
+    # Comments count too, since they are kept. The end tags are counted only if that may make a difference, because it takes long.
+    tags = text.count("<")
+    if tags > limit and tags - text.count("</") > limit:
         raise FileError(path, f"the file has more than {limit:,} elements", ADVICE, FileFlaw.SIZE)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -16,6 +15,14 @@ from amalthea_uros.xmi.emf.data_types import DataType, ValueCache, data_type_of
 #: Prefix of class names in `xsi:type`.
 TYPE_PREFIX = "am:"
 
+#: The number of waves in which references are resolved.
+WAVES = 3
+
+
+def wave_of(target: type[Element]) -> int:
+    """The wave of references to a class: names of members of a namespace need the namespace, those of call arguments the call."""
+    return 0 if target is classes.Namespace else 2 if issubclass(classes.CallArgument, target) else 1
+
 
 class FeaturePlan:
     """One feature of a class in one version.
@@ -25,7 +32,8 @@ class FeaturePlan:
     name, xml_name : the Python name and that of the file format
     many : whether it is held as a list; `only_one` if this version nevertheless allows one value only
     data_type : how values are written, None for references and parts
-    parse : text -> value for the reader, None where the text is the value
+    parsed : the values of texts for the reader, None where the text is the value
+    wave : that in which references are resolved
     omitted : the value that EMF does not write because absence means the same; None if there is no such value
     default_text : what is written for an unset attribute, as by EMF (it has an explicit default), None if nothing
     target : the class of references and parts
@@ -40,10 +48,11 @@ class FeaturePlan:
         "name",
         "omitted",
         "only_one",
-        "parse",
+        "parsed",
         "parts",
         "target",
         "target_is_abstract",
+        "wave",
         "xml_name",
     )
 
@@ -71,7 +80,8 @@ class FeaturePlan:
             self.target = getattr(classes, fact.type)
             self.target_is_abstract = declared.classes[fact.type].abstract
         self.is_string = fact.type == "EString"
-        self.parse = _quick_parse(self.data_type) if self.data_type and not self.is_string else None
+        self.parsed = ValueCache(self.data_type.parse) if self.data_type and not self.is_string else None
+        self.wave = wave_of(self.target)
         #: Plans of the objects that this feature may contain, by `xsi:type`; filled while reading.
         self.parts: dict[str | None, ClassPlan] = {}
 
@@ -100,11 +110,6 @@ def _has_to_be_stated(class_name: str, fact: FeatureFact) -> bool:
     return fact.required or fact.name in _NUMBERS.get(class_name, ())
 
 
-def _quick_parse(data_type: DataType) -> Callable[[str], Any]:
-    # Whole numbers are parsed as fast as they are looked up, and are too often different.
-    return data_type.parse if data_type.python_type is int else ValueCache(data_type.parse).__getitem__
-
-
 def reference_texts(feature: FeaturePlan, value: str) -> list[str]:
     """The ids in an attribute. A single reference is one id, even if it contains unencoded blanks."""
     return value.split() if feature.many or not value.strip() else [value.strip()]
@@ -118,9 +123,10 @@ class ClassPlan:
     features : every stored feature in the order of serialisation
     attributes : by XML name, features that may be XML attributes: values and references
     children : by XML name, features that may be child elements: parts, and references as `href`
+    wave : that in which the names of objects are known; None if nothing refers to them
     """
 
-    __slots__ = ("attributes", "children", "cls", "features", "referable")
+    __slots__ = ("attributes", "children", "cls", "features", "referable", "wave")
 
     def __init__(self, class_name: str, declared: VersionFacts) -> None:
         self.cls: type[Element] = getattr(classes, class_name)
@@ -133,6 +139,7 @@ class ClassPlan:
         self.attributes = {f.xml_name: f for f in self.features if f.data_type or f.is_reference}
         self.children = {f.xml_name: f for f in self.features if not f.data_type}
         self.referable = self.cls.is_referable
+        self.wave = wave_of(self.cls) if self.referable else None
 
 
 class Plans:

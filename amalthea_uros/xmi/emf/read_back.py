@@ -49,7 +49,7 @@ class _OpenElement(NamedTuple):
 
 def check_read_back(
     parts: Sequence[str],
-    copied: Mapping[int, Element],
+    copied: Mapping[int, list[Element]],
     document: Document,
     serializer: EmfSerializer,
     merger: SourceMerger | None,
@@ -59,7 +59,7 @@ def check_read_back(
     Parameters
     ----------
     parts : of the text
-    copied : the untouched objects whose text is copied with everything in it, by their numbers
+    copied : the untouched objects whose text is copied with everything in it, by the numbers of the parts
 
     Raises
     ------
@@ -82,10 +82,10 @@ def check_read_back(
 
 class _ReadBackComparison:
     def __init__(
-        self, document: Document, serializer: EmfSerializer, merger: SourceMerger | None, copied: Mapping[int, Element]
+        self, document: Document, serializer: EmfSerializer, merger: SourceMerger | None, copied: Mapping[int, list[Element]]
     ) -> None:
         self.document = document
-        self.copied = {str(number): element for number, element in copied.items()}
+        self.copied = {str(number): elements for number, elements in copied.items()}
         self.serializer = serializer
         self.merger = merger
         self.parser = expat.ParserCreate()
@@ -94,11 +94,13 @@ class _ReadBackComparison:
         self.skipped_depth = 0
 
     def mark(self, number: int, piece: str) -> str:
-        """The object that is read instead of a copied one."""
+        """The object that is read instead of copied ones."""
+        elements = self.copied[str(number)]
         name, last = _NAME.match(piece), piece.rfind("<")
-        is_empty = last == 0 and piece.endswith("/>")
+        last_name = _NAME.match(piece, last) if last == 0 or len(elements) > 1 else None
+        is_empty = piece.endswith("/>") and name is not None and last_name is not None and last_name[1] == name[1]
         if name is None or not (is_empty or re.fullmatch(rf"</{re.escape(name[1])}\s*>", piece[last:])):
-            self.refuse(self.copied[str(number)], "its text would not be one element")
+            self.refuse(elements[0], "its text would not be one element")
         return f'{name[0]} {_MARK}="{number}"/>'
 
     # Events
@@ -151,7 +153,7 @@ class _ReadBackComparison:
         assert self.header
         name = feature.xml_name
         type_name = attributes.pop(self.header.xsi_type, None)
-        number = parent.read.get(name, 0)
+        number, count = parent.read.get(name, 0), 1
         is_surplus = number > 0 and (not feature.many or feature.only_one)
         if feature.is_reference:
             if list(attributes) != ["href"] or is_surplus or name in parent.attributes:
@@ -167,13 +169,14 @@ class _ReadBackComparison:
             if is_surplus or (plan is None and copied is None):
                 return False
             value = values[number] if number < len(values) else None
-            if copied is not None and value is copied:
+            if copied is not None and values[number : number + len(copied)] == copied:
+                count = len(copied)
                 self.stack.append(_OpenElement(None, None, {}, frozenset()))
             elif copied is None and plan is not None and type(value) is plan.cls:
                 self.start_part(value, feature, plan, attributes)
             else:
                 self.refuse(holder, f"{name!r} would be another object")
-        parent.read[name] = number + 1
+        parent.read[name] = number + count
         return True
 
     def start_part(self, element: Element, feature: FeaturePlan, plan: ClassPlan, attributes: dict[str, str]) -> None:

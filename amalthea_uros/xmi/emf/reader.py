@@ -6,7 +6,7 @@ also of attributes, and beyond line 65,535, where libxml2 stops counting.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -17,7 +17,7 @@ from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.classes import Amalthea
 from amalthea_uros.metamodel.containment import ContainmentList
-from amalthea_uros.metamodel.element import Element, extras_of
+from amalthea_uros.metamodel.element import Element, extras_of, set_container
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.source import Prefixes, SourceText
 from amalthea_uros.xmi.emf import problems
@@ -25,40 +25,28 @@ from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import connect, disconnect
 from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModel, read_header
-from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans, reference_texts
+from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, WAVES, ClassPlan, FeaturePlan, plans, reference_texts
 from amalthea_uros.xmi.emf.problems import CollectedFinding, FindingCollector
 
 _KEPT = "Unknown content is ignored, but preserved when the file is saved."
 
-_set = object.__setattr__
+# Values go into the instance dictionary of an object and the slot of its container, in half of the time of `object.__setattr__`.
 _new = object.__new__
 _append = list.append
 _new_list = list.__new__
-_tuple: Any = tuple.__new__  # makes a named tuple without its own constructor, which is slower
 
 StartHandler = Callable[[str, dict[str, str]], None]
 EndHandler = Callable[[str], None]
 
 
-class PendingReference(NamedTuple):
-    """A reference as text, to be resolved when all documents are read.
+#: A reference to be resolved when all documents are read: the object that refers, the feature, the ids in their order, and whether
+#: they are written as `href` elements rather than as an attribute. A plain tuple, because one is made for every reference.
+PendingReference = tuple[Element, FeaturePlan, list[str], bool]
 
-    Attributes
-    ----------
-    texts : the ids, in order
-    is_href : whether it is written as `href` elements rather than as an attribute
-    """
-
-    holder: Element
-    feature: FeaturePlan
-    texts: list[str]
-    is_href: bool
-
-
-#: An open element: its object and plan (None for an `href` element), the index of the object in document order (else -1), and by
-#: feature name what was read in it so far: the list of parts or of `href` texts, or True if there can be no more. A plain tuple,
+#: An open element: its object (None for an `href` element), what was read of it so far (its instance dictionary, with the texts of
+#: its references until they are resolved), its possible child elements, and its index in document order (else -1). A plain tuple,
 #: because one is made for every element.
-Frame = tuple[Any, Any, int, dict[str, Any]]
+Frame = tuple[Any, dict[str, Any], dict[str, FeaturePlan], int]
 
 
 class ReadResult(NamedTuple):
@@ -66,7 +54,7 @@ class ReadResult(NamedTuple):
 
     Attributes
     ----------
-    referables : every object that can be referred to
+    references, referables : by the wave in which they are resolved; referables are objects that can be referred to
     xmi_ids : the `xmi:id` of every object that has one
     href_content : what is inside an `href` element, by the object that refers, the feature and the number of the element
     href_types : the classes that `href` elements state, by their texts
@@ -74,8 +62,8 @@ class ReadResult(NamedTuple):
     """
 
     document: Document
-    references: list[PendingReference]
-    referables: list[Element]
+    references: Sequence[list[PendingReference]]
+    referables: Sequence[list[Element]]
     xmi_ids: list[tuple[Element, str]]
     href_content: Mapping[tuple[Element, str, int], list[str]]
     href_types: Mapping[str, str]
@@ -89,7 +77,9 @@ def read(path: Path, content: FileText) -> ReadResult:
     ------
     ReadError : not XML, not an AMALTHEA model, a version too old, or refused for safety.
     """
-    return _finish(_ModelReader(path, content, expat.ParserCreate()))
+    return _finish(
+        _ModelReader(path, content, expat.ParserCreate(intern=None))
+    )  # to intern each name takes longer than to compare it
 
 
 class ParserEvents(Protocol):
@@ -134,9 +124,9 @@ class _ModelReader:
         self.ends: list[int] = []
         #: The open elements; an `href` element has no object of its own.
         self.stack: list[Frame] = []
-        self.references: list[PendingReference] = []
+        self.references: Sequence[list[PendingReference]] = [[] for _ in range(WAVES)]
         self.listed_references = 0
-        self.referables: list[Element] = []
+        self.referables: Sequence[list[Element]] = [[] for _ in range(WAVES)]
         self.xmi_ids: list[tuple[Element, str]] = []
         #: Comments and the like, until the part that follows them is read.
         self.pending_extras: dict[Element, list[str]] = {}
@@ -210,8 +200,8 @@ class _ModelReader:
         plan = plans(header.facts_version).of("Amalthea")
         assert plan is not None
         root = _new(plan.cls)
-        _set(root, "_container", None)
-        self.stack.append((root, plan, 0, {}))
+        set_container(root, None)
+        self.stack.append((root, root.__dict__, plan.children, 0))
         self.elements.append(root)
         self.starts.append(self.offset)
         self.ends.append(0)
@@ -224,12 +214,12 @@ class _ModelReader:
         xmi_id, xsi_type = header.xmi_id, header.xsi_type
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
-        add_referable, add_id, add_reference = self.referables.append, self.xmi_ids.append, self.references.append
+        add_id, referables, references = self.xmi_ids.append, self.referables, self.references
         pending_extras, max_depth, max_references = self.pending_extras, problems.MAX_DEPTH, MODEL_REFERENCES
 
         def start(name: str, attributes: dict[str, str]) -> None:
-            parent, parent_plan, _, held = stack[-1]
-            feature = parent_plan.children.get(name) if parent_plan is not None else None
+            parent, held, children, _ = stack[-1]
+            feature = children.get(name)
             if feature is None:
                 self.start_unknown(name)
                 return
@@ -250,7 +240,6 @@ class _ModelReader:
                 if parts is None:
                     parts = held[feature_name] = _new_list(ContainmentList)
                     parts._owner = parent
-                    _set(parent, feature_name, parts)
                 elif feature.only_one:
                     self.start_duplicate(feature)
                     return
@@ -259,16 +248,15 @@ class _ModelReader:
                 self.start_duplicate(feature)
                 return
             else:
-                held[feature_name] = True
-                _set(parent, feature_name, element)
-            _set(element, "_container", parent)
-            own_held: dict[str, Any] = {}
-            stack.append((element, plan, len(elements), own_held))
+                held[feature_name] = element
+            set_container(element, parent)
+            values = element.__dict__
+            stack.append((element, values, plan.children, len(elements)))
             add_element(element)
             add_start(parser.CurrentByteIndex)
             add_end(0)
-            if plan.referable:
-                add_referable(element)
+            if plan.wave is not None:
+                referables[plan.wave].append(element)
             known = plan.attributes
             for key, value in attributes.items():
                 attribute = known.get(key)
@@ -282,13 +270,13 @@ class _ModelReader:
                     if len(texts) > 1:
                         texts = self.several(attribute, value, texts)
                     if texts:
-                        add_reference(_tuple(PendingReference, (element, attribute, texts, False)))
-                        own_held[attribute.name] = True
-                elif attribute.parse is None:
-                    _set(element, attribute.name, value)
+                        references[attribute.wave].append((element, attribute, texts, False))
+                        values[attribute.name] = value
+                elif attribute.parsed is None:
+                    values[attribute.name] = value
                 else:
                     try:
-                        _set(element, attribute.name, attribute.parse(value))
+                        values[attribute.name] = attribute.parsed[value]
                     except ValueError as error:
                         self.invalid_value(element, key, value, error)
             if pending_extras:
@@ -312,7 +300,7 @@ class _ModelReader:
         parser, stack, ends, pending_extras = self.parser, self.stack, self.ends, self.pending_extras
 
         def end(_name: str) -> None:
-            element, _, place, _ = stack.pop()
+            element, _, _, place = stack.pop()
             if place >= 0:
                 ends[place] = parser.CurrentByteIndex
                 if pending_extras:
@@ -329,28 +317,28 @@ class _ModelReader:
         text = href.partition("#")[2] or href
         if type_name is not None:
             self.href_types[text] = type_name.rpartition(":")[2]
-        holder, _, _, held = frame
+        holder, held, _, _ = frame
         texts = held.get(feature.name)
         if texts is None:
             texts = held[feature.name] = []
-            self.references.append(PendingReference(holder, feature, texts, True))
-        elif texts is True or not feature.many:
+            self.references[feature.wave].append((holder, feature, texts, True))
+        elif isinstance(texts, str) or not feature.many:
             self.start_duplicate(feature)
             return
         self.href = (holder, feature.name, len(texts))
         texts.append(text)
-        self.stack.append((None, None, -1, {}))
+        self.stack.append((None, {}, {}, -1))
 
     # What the metamodel does not know
 
     def start_unknown(self, name: str) -> None:
-        holder, plan, *_ = self.stack[-1]
-        where = type(holder).__name__ if plan is not None else "a reference"
+        holder, _, children, _ = self.stack[-1]
+        where = type(holder).__name__ if holder is not None else "a reference"
         message = f"unknown element <{name}> in {where} (AMALTHEA {self.version})"
         self.collector.add(
             CollectedFinding("XMI010", Severity.WARNING, message, _KEPT, self.offset),
             name,
-            plan.children if plan else (),
+            children,
         )
         self.skip()
 
@@ -477,6 +465,6 @@ class _ModelReader:
         return problems.too_deep(self.path, self.content.text, self.offset)
 
     def malformed(self, error: expat.ExpatError) -> ReadError:
-        held = next(((frame[0], frame[2]) for frame in reversed(self.stack) if frame[0] is not None), None)
+        held = next(((frame[0], frame[3]) for frame in reversed(self.stack) if frame[0] is not None), None)
         open_element = (type(held[0]).__name__, self.starts[held[1]]) if held else None
         return problems.malformed(self.path, self.content.text, error, self.parser.ErrorByteIndex, open_element)

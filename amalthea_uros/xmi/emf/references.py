@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote
@@ -15,12 +16,11 @@ from urllib.parse import unquote
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.metamodel.classes import CallArgument, Namespace
 from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
-from amalthea_uros.xmi.emf.plan import FeaturePlan, plans
+from amalthea_uros.xmi.emf.plan import WAVES, FeaturePlan, plans
 from amalthea_uros.xmi.emf.problems import location
 from amalthea_uros.xmi.emf.reader import PendingReference, ReadResult
 
@@ -38,31 +38,13 @@ def resolve(results: Sequence[ReadResult], linked: Mapping[str, Element]) -> lis
     linked : objects by texts whose meaning is known already, because the references of migrated models are links before they are texts
     """
     resolver = _Resolver(results, linked)
-    # The names of namespace members need their namespace; those of call arguments need the call and the parameter.
-    waves: list[list[tuple[ReadResult, PendingReference]]] = [[], [], []]
-    for result in results:
-        for pending in result.references:
-            target = pending.feature.target
-            wave = 0 if target is Namespace else 2 if issubclass(CallArgument, target) else 1
-            waves[wave].append((result, pending))
-    resolver.index(_referables(results, Namespace))
-    resolver.link_all(waves[0])
-    resolver.index(_referables(results, None))
-    resolver.link_all(waves[1])
-    resolver.index(_referables(results, CallArgument))
-    resolver.link_all(waves[2])
+    for wave in range(WAVES):
+        resolver.index(chain.from_iterable(result.referables[wave] for result in results))
+        for result in results:
+            resolver.link_all(result, result.references[wave])
     for result in results:
         resolver.check_xmi_ids(result)
     return resolver.findings()
-
-
-def _referables(results: Sequence[ReadResult], cls: type[Element] | None) -> Iterable[Element]:
-    """The objects of a class to which references are possible; None: all that can be resolved in the main wave."""
-    for result in results:
-        if cls is None:
-            yield from (e for e in result.referables if type(e) is not Namespace and type(e) is not CallArgument)
-        else:
-            yield from (e for e in result.referables if type(e) is cls)
 
 
 class Use(NamedTuple):
@@ -88,7 +70,7 @@ class _Resolver:
         #: Ids that several objects share; a reference means the first one in its own document.
         self.shared: dict[str, list[Element]] = {}
         self.suffixes: dict[type[Element], str] = {}
-        self.in_namespace = {p.holder for r in results for p in r.references if p.feature.target is Namespace}
+        self.in_namespace = {holder for result in results for holder, *_ in result.references[0]}
         #: The unique name of every object that can be referred to.
         self.names: dict[Element, str] = {}
         self.proxies: dict[tuple[str, type[Element]], Element] = {}
@@ -107,17 +89,17 @@ class _Resolver:
             if suffix is None:
                 suffix = suffixes[cls] = "" if has_prefix(cls) else TYPE_MARK + cls.__name__
             # The usual case; the general function takes three times as long.
-            name = encode(element.name) + suffix if suffix and element not in in_namespace else unique_name(element)  # type: ignore[attr-defined]
+            is_usual = suffix and element not in in_namespace
+            name = encode(element.__dict__.get("name")) + suffix if is_usual else unique_name(element)
             names[element] = name
             first = by_id.setdefault(name, element)
             if first is not element:
                 self.shared.setdefault(name, [first]).append(element)
 
-    def link_all(self, wave: list[tuple[ReadResult, PendingReference]]) -> None:
-        """Assign the targets of all references; note where the form (attribute or `href`) is not the one that EMF would write."""
-        by_id, shared, is_single = self.by_id, self.shared, len(self.results) == 1
-        for result, (holder, feature, texts, is_href) in wave:
-            document = result.document
+    def link_all(self, result: ReadResult, references: list[PendingReference]) -> None:
+        """Assign the targets of references; note where the form (attribute or `href`) is not the one that EMF would write."""
+        by_id, shared, document, is_single = self.by_id, self.shared, result.document, len(self.results) == 1
+        for holder, feature, texts, is_href in references:
             targets = []
             local = True
             for text in texts:
@@ -128,7 +110,7 @@ class _Resolver:
                 targets.append(target)
                 local = local and (is_single or target.document is document)
             if targets:
-                _set(holder, feature.name, ReferenceList(holder, targets) if feature.many else targets[0])
+                holder.__dict__[feature.name] = ReferenceList(holder, targets) if feature.many else targets[0]
             if is_href and result.href_content:
                 for number, target in enumerate(targets):
                     content = result.href_content.get((holder, feature.name, number))

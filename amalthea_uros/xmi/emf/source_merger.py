@@ -64,23 +64,25 @@ class SourceMerger:
         start = self.source.start(place)
         return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
 
-    def has_emf_layout(self, children: list[Child], at: int, end: int, separator: str) -> bool:
-        """Whether the content between two offsets consists of exactly these children, in order and in EMF's layout."""
+    def ends_in_emf_layout(self, children: list[Child], at: int, end: int, separator: str) -> list[int] | None:
+        """The offset after each child if the content between two offsets consists of exactly these, in order and in EMF's layout."""
         text, source, index = self.text, self.source, self.source.index
+        ends = []
         for child in children:
             if not text.startswith(separator, at):
-                return False
+                return None
             at += len(separator)
             if isinstance(child, ChildReference):
                 if not text.startswith(child.tag, at):
-                    return False
+                    return None
                 at += len(child.tag)
             else:
                 place = index.get(child.element)
                 if place is None or source.start(place) != at or not self.is_same_part(child.feature.xml_name, place):
-                    return False
+                    return None
                 at = self.end(place)
-        return at <= end and text[at:end] == separator[: -len("  ")]
+            ends.append(at)
+        return ends if at <= end and text[at:end] == separator[: -len("  ")] else None
 
     # Start tags
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
+from itertools import groupby
 
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import Element
@@ -78,8 +79,8 @@ class _Writer:
         self.outside = (document.prolog, document.epilog)
         self.depth = 1
         self.out: list[str] = []
-        #: The objects whose text is copied with everything in it, by the number of the piece in `out`.
-        self.copied: dict[int, Element] = {}
+        #: The objects whose text is copied with everything in it, successive ones of a feature, by the number of the piece in `out`.
+        self.copied: dict[int, list[Element]] = {}
         #: Where the source has objects that were modified.
         self.modified_places = sorted(place for each in self.modified if (place := self.index.get(each)) is not None)
 
@@ -143,7 +144,7 @@ class _Writer:
         if self.merger is None or self.source is None or (place is not None and not self.merger.is_same_part(tag, place)):
             place = None
         elif place is not None and self.is_untouched(place):
-            self.copied[len(self.out)] = element
+            self.copied[len(self.out)] = [element]
             self.out.append(self.source.text[self.source.start(place) : self.merger.end(place)])
             return
         if self.depth == MAX_DEPTH:
@@ -229,14 +230,10 @@ class _Writer:
                 out.append("/>")
             return
         content, end = at + 1, self.source.end(place)
-        if self.merger.has_emf_layout(children, content, end, separator):
+        ends = self.merger.ends_in_emf_layout(children, content, end, separator)
+        if ends is not None:
             out.append(">")
-            for child in children:
-                out.append(separator)
-                if isinstance(child, ChildPart):
-                    self.part(child, indent + _INDENT)
-                else:
-                    out.append(child.tag)
+            self.emf_content(children, ends, content, indent + _INDENT)
             out.append(text[end - len(separator) + len(_INDENT) : self.merger.end(place)])
             return
         items = self.merger.content(element, children, content, end, separator)
@@ -253,6 +250,30 @@ class _Writer:
                 if item.isspace():
                     inner = item.rpartition("\n")[2]
         out.append(text[end : self.merger.end(place)])
+
+    def emf_content(self, children: list[Child], ends: list[int], at: int, indent: str) -> None:
+        """Children that are in the source in EMF's layout, each up to an offset; successive ones that are copied are one piece."""
+        assert self.source
+        out, separator = self.out, self.newline + indent
+        for (_, is_copied), group in groupby(zip(children, ends, strict=True), key=self.piece_of):
+            pairs = list(group)
+            last = pairs[-1][1]
+            if is_copied:
+                out.append(separator)
+                self.copied[len(out)] = [child.element for child, _ in pairs if isinstance(child, ChildPart)]
+                out.append(self.source.text[at + len(separator) : last])
+            for child, _ in () if is_copied else pairs:
+                out.append(separator)
+                if isinstance(child, ChildPart):
+                    self.part(child, indent)
+                else:
+                    out.append(child.tag)
+            at = last
+
+    def piece_of(self, pair: tuple[Child, int]) -> tuple[FeaturePlan, bool]:
+        """The feature of a child, and whether nothing was modified in it."""
+        child, _ = pair
+        return child.feature, isinstance(child, ChildPart) and self.is_untouched(self.index[child.element])
 
 
 def canonical_prefixes(document: Document) -> Prefixes:
