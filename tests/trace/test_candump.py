@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 from can_frames import DATA, ERROR, EXTENDED, GAP, MS, REMOTE, SECOND, US, read, rows, rules
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from amalthea_uros.errors import InvalidArgumentError, ReadError
@@ -279,6 +279,8 @@ FRAMES = st.one_of(
     direction=st.sampled_from(["", " R", " T"]),
     damage=st.one_of(st.none(), st.tuples(st.integers(0, 50), st.sampled_from(" #().09aAFRgZ_\t\x00"))),
 )
+@example(0, 0, "c", "123#", "", (20, "\t"))
+@example(0, 0, "ch", "123#", "", (20, "\x1b"))
 def test_columns_and_single_lines_are_read_alike(seconds, fraction, channel, frame, direction, damage):
     text = f"({seconds:010}.{fraction:06}) {channel} {frame}{direction}"
     if damage is not None:

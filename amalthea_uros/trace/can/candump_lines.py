@@ -15,7 +15,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.trace.can.frames import EXTENDED, XL, FrameKind
+from amalthea_uros.trace.can.frames import EXTENDED, UNKNOWN, XL, FrameKind
 from amalthea_uros.trace.files import UnreadableError
 
 if TYPE_CHECKING:
@@ -314,10 +314,10 @@ def _data(text: NDArray[np.uint8], start: Numbers, end: Numbers, is_plain: Flags
 
 
 def _channels(
-    text: NDArray[np.uint8], block: bytes, name: tuple[Numbers, Numbers], is_plain: Flags, channel_index: Callable[[str], int]
+    text: NDArray[np.uint8], block: bytes, place: tuple[Numbers, Numbers], is_plain: Flags, channel_index: Callable[[str], int]
 ) -> tuple[NDArray[np.int16], Flags]:
     """The channel of each line, and whether it is known; a block with a great many names is not worth columns."""
-    start, end = name
+    start, end = place
     channel, is_open = np.zeros(len(start), np.int16), is_plain & (end > start)
     is_known = np.zeros(len(start), np.bool_)
     for _ in range(_MAX_NAMES):
@@ -326,9 +326,11 @@ def _channels(
             break
         word = block[start[first] : end[first]]
         is_same = is_open & (end - start == len(word))
-        for place, character in enumerate(word):
-            is_same &= _at(text, start + place) == character
-        index = channel_index(word.decode(errors="replace"))
+        for offset, character in enumerate(word):
+            is_same &= _at(text, start + offset) == character
+        name = word.decode(errors="replace")
+        # Names with tabs or colours are left to `parse`, which reads or refuses them.
+        index = channel_index(name) if name.isprintable() else UNKNOWN
         channel[is_same] = index
         is_known |= is_same & (index >= 0)
         is_open &= ~is_same
