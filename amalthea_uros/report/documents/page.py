@@ -30,12 +30,12 @@ from amalthea_uros.report.documents.analysis import (
     cores_of,
     execution_times,
     handles,
-    impact_section,
     latencies_of_messages,
     methods,
     response_times,
     wires_of,
 )
+from amalthea_uros.report.documents.changes import impact_section
 from amalthea_uros.report.documents.descriptions import bus_section, pools_section
 from amalthea_uros.report.documents.explanation import interference, message_hops, terms_of
 from amalthea_uros.report.documents.findings import findings_section

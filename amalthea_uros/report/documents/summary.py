@@ -8,7 +8,8 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.impact import impact
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.basics.document import Block, ResultDocument, Section, Sentences, Table, document, section, table
-from amalthea_uros.report.documents.analysis import impact_section, latencies_of_messages
+from amalthea_uros.report.documents.analysis import latencies_of_messages
+from amalthea_uros.report.documents.changes import impact_section
 from amalthea_uros.report.documents.judged import limits_table
 from amalthea_uros.report.documents.page import chains_table
 from amalthea_uros.report.documents.simulation import REMINDER
