@@ -102,7 +102,7 @@ class XrceBuild:
             case "RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT" if middleware.reliable.timeout is not None:
                 return row.stated(middleware.limits.model_copy(update={row.name: middleware.reliable.timeout}))
         stated = row.stated(middleware.limits)
-        if stated is None and row.name == self.mtu_option and middleware.limits.RMW_UXRCE_MTU is not None:
+        if stated is None and middleware.limits.RMW_UXRCE_MTU is not None and row.name == self.mtu_option:
             return middleware.limits.RMW_UXRCE_MTU // 8
         return stated
 
