@@ -68,10 +68,10 @@ class _OwnFields(NamedTuple):
 
     def in_order(self, owner: Any) -> dict[str, Field[Any]]:
         """All fields of the class: first those that it inherits."""
-        found: dict[str, Field[Any]] = {}
+        every: dict[str, Field[Any]] = {}
         for base in owner.__mro__[-1:0:-1]:
-            found |= getattr(base, "__dataclass_fields__", {})
-        return found | {name: self._field(name) for name in self.kinds}
+            every |= getattr(base, "__dataclass_fields__", {})
+        return every | {name: self._field(name) for name in self.kinds}
 
     def _field(self, name: str) -> Any:
         value = self.given.get(name, MISSING)
@@ -133,24 +133,24 @@ class _Later:
 
 def _members(own: _OwnFields, *, slots: bool, frozen: bool, **shown: bool) -> dict[str, _Later | None]:
     """The attributes of a class that are made later; None where it has none, although another class may have one."""
-    found: dict[str, _Later | None] = {
+    members: dict[str, _Later | None] = {
         "__dataclass_fields__": _Later(own.in_order),
         "__dataclass_params__": _Later(lambda _: _parameters(frozen=frozen, **shown)),
         "__match_args__": _Later(_positional),
         "__init__": _Later(lambda owner: _constructor(owner, frozen=frozen)),
     }
     if shown.get("repr", True):
-        found["__repr__"] = _Later(_text)
+        members["__repr__"] = _Later(_text)
     if shown.get("eq", True):
-        found |= {"__eq__": _Later(_equality), "__hash__": _Later(_hash) if frozen else None}
+        members |= {"__eq__": _Later(_equality), "__hash__": _Later(_hash) if frozen else None}
     if frozen:
-        found |= {"__setattr__": _Later(_refusal), "__delattr__": _Later(_refusal_to_delete)}
-        found |= {"__getstate__": _Later(_state), "__setstate__": _Later(_restoration)} if slots else {}
-    return found
+        members |= {"__setattr__": _Later(_refusal), "__delattr__": _Later(_refusal_to_delete)}
+        members |= {"__getstate__": _Later(_state), "__setstate__": _Later(_restoration)} if slots else {}
+    return members
 
 
 def _parameters(**options: bool) -> Any:
-    """What `dataclasses` notes of its options."""
+    """The options as `dataclasses` keeps them."""
     of_python: Any = dataclasses.dataclass(**options)(type("_", (), {"__doc__": "_"}))
     return of_python.__dataclass_params__
 
@@ -178,8 +178,8 @@ def _constructor(owner: Any, *, frozen: bool) -> Any:
 
 def _defaults(parameters: Iterable[Field[Any]]) -> dict[str, Any]:
     """The defaults of those parameters that have one."""
-    found = {each.name: each.default if each.default_factory is MISSING else _FACTORY for each in parameters}
-    return {name: value for name, value in found.items() if value is not MISSING}
+    values = {each.name: each.default if each.default_factory is MISSING else _FACTORY for each in parameters}
+    return {name: value for name, value in values.items() if value is not MISSING}
 
 
 class _Factory:

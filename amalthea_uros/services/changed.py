@@ -47,7 +47,7 @@ class ChangedSystem:
 
     @cached_property
     def origin(self) -> ChangeOrigin:
-        """What the changes act on."""
+        """The system or text that the changes act on."""
         return self.find_origin()
 
     @property
@@ -104,7 +104,7 @@ def open_changed(
 
 
 def _changed(unchanged: ChangedSystem) -> ChangedSystem:
-    """What the changes make of a system to which nothing has happened yet."""
+    """A system with its changes, of which none has been made yet."""
     origin, changes = unchanged.origin, unchanged.changes
     differences = origin.differences(changes)
     system, settings = origin.configure(changes)
@@ -124,7 +124,7 @@ def _with_new_findings(opened: SystemInput, origin: ChangeOrigin, changes: Seque
 
 
 def _origin_finder(opened: SystemInput, given: Configuration, *, with_bus: bool) -> Callable[[], ChangeOrigin]:
-    """What returns what changes of a subject act on: a model, a system, or the text of a description as it is now."""
+    """A function that returns a model, a system, or the text of a description as it is now, on which changes act."""
     if opened.model is not None:
         return partial(_model_origin, opened.model, given, is_own=bool(opened.paths))
     if opened.assembly is None:

@@ -283,7 +283,7 @@ class _Slots:
         return self._rows[row]
 
     def _numbered(self, phases: tuple[tuple[int, ...], ...]) -> tuple[int, ...]:
-        """What happens in each slot, by numbers, if the counters of the tasks select these first jobs."""
+        """The contents of the slots, by numbers, if the counters of the tasks select these first jobs."""
         if phases not in self._slots:
             columns = [self._column(task, own) for task, own in zip(self._tasks.values(), phases, strict=True)]
             contents = self._contents
@@ -300,10 +300,10 @@ class _Slots:
         key = (task.name, phases)
         if key not in self._columns:
             releases = self._releases[task.name]
-            found: list[tuple[Hashable, ...]] = [()] * (self._cycle // self._length)
+            cells: list[tuple[Hashable, ...]] = [()] * (self._cycle // self._length)
             for (slot, at), executed in zip(releases, task.executed(phases, len(releases)), strict=True):
-                found[slot] += ((at, executed),)
-            self._columns[key] = [self._cells.setdefault(jobs, len(self._cells)) for jobs in found]
+                cells[slot] += ((at, executed),)
+            self._columns[key] = [self._cells.setdefault(jobs, len(self._cells)) for jobs in cells]
         return self._columns[key]
 
 

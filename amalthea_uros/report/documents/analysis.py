@@ -79,7 +79,7 @@ def analysis_document(result: AnalysisResult) -> ResultDocument:
 
 
 def _on_request(result: AnalysisResult) -> Iterator[Section]:
-    """What only some runs ask for, so that only these import it."""
+    """The sections that only some runs ask for, so that only these import their modules."""
     if result.impact is None and result.sensitivity is None and not result.proposals:
         return
     from amalthea_uros.report.documents.changes import factors_section, impact_section, priorities_section

@@ -1,11 +1,12 @@
-"""What changes do to a system, how much execution times may grow, and better priorities, as sections of documents."""
+"""Effects of changes, maximum factors on execution times, and better priorities, as sections of documents."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 
-from amalthea_uros.analyze.impact import Effect, Impact
+from amalthea_uros.analyze.impact import Effect, Impact, impact
 from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
+from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.report.basics.document import (
     Badge,
@@ -29,7 +30,7 @@ _EFFECTS = {Effect.BETTER: Tone.GOOD, Effect.WORSE: Tone.BAD, Effect.UNKNOWN: To
 
 
 def what_if_document(result: WhatIf) -> ResultDocument:
-    """What was changed, and what that does to the results."""
+    """The changed values, and the effect on the results."""
     return document((section("", lines(*map(str, result.differences))), impact_section(result.impact)))
 
 
@@ -38,35 +39,40 @@ def proposal_document(proposal: Proposal) -> ResultDocument:
     return document([priorities_section(proposal)])
 
 
-def impact_section(impact: Impact, remark: str = "") -> Section:
-    """What a change does to the results."""
+def comparison_section(before: Analysis, after: Analysis) -> Section:
+    """Two analyses of a system compared."""
+    return impact_section(impact(before, after))
+
+
+def impact_section(effect: Impact, remark: str = "") -> Section:
+    """The effect of a change on the results."""
     title = "Before and after the change" + (f" ({remark})" if remark else "")
-    return section(title, impact_table(impact), Sentences([unchanged_text(impact)]))
+    return section(title, impact_table(effect), Sentences([unchanged_text(effect)]))
 
 
-def impact_table(impact: Impact) -> Table:
+def impact_table(effect: Impact) -> Table:
     """A row for each figure that changed."""
     rows: list[tuple[Cell, ...]] = [
-        (*found[:-2], Badge(found[-2], _EFFECTS.get(row.effect, Tone.NEUTRAL)), found[-1])
-        for row, found in zip(impact.rows, impact_cells(impact), strict=True)
+        (*cells[:-2], Badge(cells[-2], _EFFECTS.get(row.effect, Tone.NEUTRAL)), cells[-1])
+        for row, cells in zip(effect.rows, impact_cells(effect), strict=True)
     ]
     return table("Results before and after the change", ("object", "quantity", ">before", ">after", "effect", "claim"), rows)
 
 
-def factors_section(found: Sensitivity) -> Section:
+def factors_section(sensitivity: Sensitivity) -> Section:
     """By how much execution times can increase."""
-    rows = [("all together", _factor(found.everything), "", "")]
+    rows = [("all together", _factor(sensitivity.everything), "", "")]
     rows += [
-        (name, _factor(factor), at_least(found.execution_times[name]), _longest(found, name))
-        for name, factor in found.processes.items()
+        (name, _factor(factor), at_least(sensitivity.execution_times[name]), _longest(sensitivity, name))
+        for name, factor in sensitivity.processes.items()
     ]
     factors = table("Maximum factors", ("process", ">factor", ">execution time", ">may grow to"), rows)
     return section("Maximum factors on execution times", factors)
 
 
-def _longest(found: Sensitivity, name: str) -> str:
-    factor = found.processes[name]
-    return "" if factor is None or factor >= MAX_FACTOR else at_least(found.longest(name))
+def _longest(sensitivity: Sensitivity, name: str) -> str:
+    factor = sensitivity.processes[name]
+    return "" if factor is None or factor >= MAX_FACTOR else at_least(sensitivity.longest(name))
 
 
 def _factor(factor: Fraction | None) -> str:

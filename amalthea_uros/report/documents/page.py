@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from amalthea_uros.analyze.explanations.processes import explain_process
-from amalthea_uros.analyze.impact import impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ProcessExplanation
@@ -35,7 +34,6 @@ from amalthea_uros.report.documents.analysis import (
     response_times,
     wires_of,
 )
-from amalthea_uros.report.documents.changes import impact_section
 from amalthea_uros.report.documents.descriptions import bus_section, pools_section
 from amalthea_uros.report.documents.explanation import interference, message_hops, terms_of
 from amalthea_uros.report.documents.findings import findings_section
@@ -65,6 +63,8 @@ def _changes_section(content: ReportContent) -> Section | None:
     """The values before and after, and the verdict without the changes."""
     if content.before is None:
         return None
+    from amalthea_uros.report.documents.changes import comparison_section
+
     rows = [(each.target, each.before, each.after) for each in content.differences]
     return Section(
         "changes",
@@ -72,7 +72,7 @@ def _changes_section(content: ReportContent) -> Section | None:
         "This report is about the system with these changes; the files are as they were.",
         (
             table("Changed values", ("value", "before", "after"), rows),
-            *impact_section(impact(content.before, content.analysis)).blocks,
+            *comparison_section(content.before, content.analysis).blocks,
             Sentences([f"Before the changes: {closing_line(content.before.summary)}"]),
         ),
     )
