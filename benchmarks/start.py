@@ -3,6 +3,8 @@
 The commands take turns, so that whatever else the computer does concerns all of them; of each the least time counts. All modules are
 compiled before, as those of an installed package are. With the folder of another checkout, `python benchmarks/start.py FOLDER`, its
 commands take turns with the present ones, as the figures before a change.
+
+The unit contains pydantic, a library of amuros when the targets were set; the extra `bench` has it.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -30,6 +33,8 @@ COMMANDS = {
 
 
 def main() -> None:
+    if find_spec("pydantic") is None:
+        sys.exit("the unit needs pydantic: pip install 'amuros[bench]'")
     roots = [ROOT, *map(Path, sys.argv[1:2])]
     calls = {(name, root): ["-m", "amalthea_uros", *map(str, words)] for name, words in COMMANDS.items() for root in roots}
     calls[IMPORTS, ROOT] = ["-c", IMPORTS]

@@ -1,20 +1,19 @@
-"""Dataclasses whose methods are made when they are first needed.
+"""Dataclasses of which everything is made when it is first needed.
 
-`dataclasses.dataclass` compiles up to six functions for each class, which takes ten times as long as everything else about it, and a
-short command imports five hundred classes. Here `__init__` is compiled when the first object is made, and the other methods are
-closures. Otherwise these are dataclasses like others: with `fields`, `replace`, `copy`, `pickle` and `inspect.signature`.
+`dataclasses.dataclass` compiles up to six functions for each class and examines its fields, which takes ten times as long as everything
+else about it, and a short command imports five hundred classes. Here a class has its slots at once; its methods, and what the module
+`dataclasses` knows of it, are made when somebody asks for them. Otherwise these are dataclasses like others: with `fields`, `replace`,
+`copy`, `pickle` and `inspect.signature`; only a class without a docstring has none.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, Field
 from operator import attrgetter
 from reprlib import recursive_repr
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass
@@ -33,81 +32,154 @@ else:
 
 
 def _record(cls: Any, *, frozen: bool = False, slots: bool = False, kw_only: bool = False, **shown: bool) -> Any:
-    with _thawed(cls):
-        made: Any = dataclasses.dataclass(init=False, repr=False, eq=False, slots=slots, kw_only=kw_only)(cls)
-    kept = {"init": True, "repr": True, "eq": True, "frozen": frozen} | shown
-    for name, method in _methods(made, **kept).items():
-        if name not in made.__dict__:
-            setattr(made, name, method)
-    for name, value in kept.items():
-        setattr(made.__dataclass_params__, name, value)
+    kinds = {name: kind for name, kind in cls.__annotations__.items() if not _is_of_class(kind)}
+    given = {name: cls.__dict__[name] for name in kinds if name in cls.__dict__}
+    own = _OwnFields(kinds, given, kw_only)
+    members = {name: each for name, each in _members(own, slots=slots, frozen=frozen, **shown).items() if _is_open(cls, name)}
+    return _with_slots(cls, own, members) if slots else _without_slots(cls, own, members)
+
+
+def _is_of_class(kind: Any) -> bool:
+    """Whether an annotation is that of a variable of the class, which is no field."""
+    return str(kind).removeprefix("typing.").startswith("ClassVar")
+
+
+def _is_open(cls: Any, name: str) -> bool:
+    """Whether a class has no such method; one that has only an `__eq__` of its own has None as its `__hash__` by that."""
+    return cls.__dict__.get(name) is None
+
+
+#: By this mark `dataclasses` knows a field from a variable of the class.
+_FIELD = dataclasses._FIELD  # type: ignore[attr-defined]
+
+
+class _OwnFields(NamedTuple):
+    """The fields of a class without those that it inherits.
+
+    Attributes
+    ----------
+    kinds : annotations
+    given : defaults, and what `field` returned
+    """
+
+    kinds: Mapping[str, Any]
+    given: Mapping[str, Any]
+    kw_only: bool
+
+    def in_order(self, owner: Any) -> dict[str, Field[Any]]:
+        """All fields of the class: first those that it inherits."""
+        every: dict[str, Field[Any]] = {}
+        for base in owner.__mro__[-1:0:-1]:
+            every |= getattr(base, "__dataclass_fields__", {})
+        return every | {name: self._field(name) for name in self.kinds}
+
+    def _field(self, name: str) -> Any:
+        value = self.given.get(name, MISSING)
+        made: Any = value if isinstance(value, Field) else field(default=value)
+        made.name, made.type = name, self.kinds[name]
+        made.kw_only = self.kw_only if made.kw_only is MISSING else made.kw_only
+        made._field_type = _FIELD
+        return made
+
+
+def _with_slots(cls: Any, own: _OwnFields, members: Mapping[str, _Later | None]) -> Any:
+    """The class again, because slots cannot be added to one."""
+    inherited = {name for base in cls.__mro__[1:-1] for name in base.__dict__.get("__slots__", ())}
+    kept = {name: value for name, value in cls.__dict__.items() if name not in own.kinds and name not in _OF_EACH_OBJECT}
+    slots = tuple([name for name in own.kinds if name not in inherited])
+    made = type(cls)(cls.__name__, cls.__bases__, {**kept, **members, "__slots__": slots})
+    made.__qualname__ = cls.__qualname__
     return made
 
 
-def _methods(made: Any, **kept: bool) -> dict[str, Any]:
-    """The methods of a class, which it gets unless it has its own."""
-    every = dataclasses.fields(made)
-    names = [each.name for each in every]
-    methods: dict[str, Any] = {"__init__": _Constructor(made, frozen=kept["frozen"])}
-    if kept["repr"]:
-        methods["__repr__"] = _text_of([each.name for each in every if each.repr])
-    if kept["eq"]:
-        methods["__eq__"] = _equality_of(_values([each.name for each in every if each.compare]))
-        if made.__dict__.get("__hash__") is None:
-            # Not a method that it has: a class that has only an __eq__ of its own has None as its __hash__ by that.
-            hashed = [each.name for each in every if (each.compare if each.hash is None else each.hash)]
-            made.__hash__ = _hash_of(_values(hashed)) if kept["frozen"] else None
-    if kept["frozen"]:
-        methods |= _frozen(made, names)
-        methods |= _state(names) if "__slots__" in made.__dict__ else {}
-    return methods
+#: What a class without slots has, and one with slots has not.
+_OF_EACH_OBJECT = ("__dict__", "__weakref__")
 
 
-@contextmanager
-def _thawed(cls: Any) -> Iterator[None]:
-    """Have the dataclasses that a class is derived from look as if they were not frozen, for `dataclasses` to accept both together."""
-    every = [base.__dict__["__dataclass_params__"] for base in cls.__mro__[1:] if "__dataclass_params__" in base.__dict__]
-    former = [each.frozen for each in every]
-    for each in every:
-        each.frozen = False
-    try:
-        yield
-    finally:
-        for each, frozen in zip(every, former, strict=True):
-            each.frozen = frozen
+def _without_slots(cls: Any, own: _OwnFields, members: Mapping[str, _Later | None]) -> Any:
+    """The class, which keeps the defaults as its attributes."""
+    for name, value in own.given.items():
+        if isinstance(value, Field):
+            if value.default is MISSING:
+                delattr(cls, name)
+            else:
+                setattr(cls, name, value.default)
+    for name, member in members.items():
+        setattr(cls, name, member)
+        if member is not None:
+            member.__set_name__(cls, name)
+    return cls
 
 
-class _Constructor:
-    """In the place of an `__init__` until somebody asks for it."""
+class _Later:
+    """In the place of an attribute of a class until somebody asks for it."""
 
-    __slots__ = ("_frozen", "_owner")
+    __slots__ = ("_make", "_name", "_owner")
 
-    def __init__(self, owner: Any, *, frozen: bool) -> None:
-        self._owner, self._frozen = owner, frozen
+    def __init__(self, make: Callable[[Any], Any]) -> None:
+        self._make = make
+
+    def __set_name__(self, owner: Any, name: str) -> None:
+        self._owner, self._name = owner, name
 
     def __get__(self, instance: object, kind: type | None = None) -> Any:
+        owner, name = self._owner, self._name
         # Another thread may have been faster.
-        if self._owner.__dict__["__init__"] is self:
-            self._owner.__init__ = self._made()
-        return self._owner.__dict__["__init__"].__get__(instance, kind)
+        if owner.__dict__[name] is self:
+            setattr(owner, name, self._make(owner))
+        made = owner.__dict__[name]
+        return made.__get__(instance, kind) if hasattr(made, "__get__") else made
 
-    def _made(self) -> Any:
-        owner, every = self._owner, dataclasses.fields(self._owner)
-        scope = {"_object": object, "_factory": _FACTORY}
-        for each in every:
-            scope |= {f"_default_{each.name}": each.default, f"_make_{each.name}": each.default_factory}
-        given = [_parameter(each) for each in every if each.init and not each.kw_only]
-        named = [_parameter(each) for each in every if each.init and each.kw_only]
-        lines = [_assignment(each, frozen=self._frozen) for each in every if _is_assigned(each, owner)]
-        lines += ["self.__post_init__()"] if hasattr(owner, "__post_init__") else []
-        head = ", ".join(["self", *given, *(["*", *named] if named else [])])
-        text = f"def make({', '.join(scope)}):\n def __init__({head}):\n  {'; '.join(lines) or 'pass'}\n return __init__"
-        made: dict[str, Any] = {}
-        exec(text, getattr(sys.modules.get(owner.__module__), "__dict__", {}), made)
-        function = made["make"](**scope)
-        function.__qualname__ = f"{owner.__qualname__}.__init__"
-        function.__annotations__ = {each.name: each.type for each in every if each.init} | {"return": None}
-        return function
+
+def _members(own: _OwnFields, *, slots: bool, frozen: bool, **shown: bool) -> dict[str, _Later | None]:
+    """The attributes of a class that are made later; None where it has none, although another class may have one."""
+    members: dict[str, _Later | None] = {
+        "__dataclass_fields__": _Later(own.in_order),
+        "__dataclass_params__": _Later(lambda _: _parameters(frozen=frozen, **shown)),
+        "__match_args__": _Later(_positional),
+        "__init__": _Later(lambda owner: _constructor(owner, frozen=frozen)),
+    }
+    if shown.get("repr", True):
+        members["__repr__"] = _Later(_text)
+    if shown.get("eq", True):
+        members |= {"__eq__": _Later(_equality), "__hash__": _Later(_hash) if frozen else None}
+    if frozen:
+        members |= {"__setattr__": _Later(_refusal), "__delattr__": _Later(_refusal_to_delete)}
+        members |= {"__getstate__": _Later(_state), "__setstate__": _Later(_restoration)} if slots else {}
+    return members
+
+
+def _parameters(**options: bool) -> Any:
+    """The options as `dataclasses` keeps them."""
+    of_python: Any = dataclasses.dataclass(**options)(type("_", (), {"__doc__": "_"}))
+    return of_python.__dataclass_params__
+
+
+def _positional(owner: Any) -> tuple[str, ...]:
+    return tuple([each.name for each in dataclasses.fields(owner) if each.init and not each.kw_only])
+
+
+def _constructor(owner: Any, *, frozen: bool) -> Any:
+    every = [each for each in dataclasses.fields(owner) if each.init]
+    given = [each for each in every if not each.kw_only]
+    named = [each for each in every if each.kw_only]
+    scope = {"__name__": owner.__module__, "_set": object.__setattr__, "_factory": _FACTORY}
+    head = ", ".join(["self", *[each.name for each in given], *(["*", *[each.name for each in named]] if named else [])])
+    lines = [_assignment(each, scope, frozen=frozen) for each in dataclasses.fields(owner) if _is_assigned(each, owner)]
+    lines += ["self.__post_init__()"] if hasattr(owner, "__post_init__") else []
+    exec(f"def __init__({head}): {'; '.join(lines) or 'pass'}", scope)
+    function: Any = scope["__init__"]
+    function.__defaults__ = tuple(_defaults(given).values())
+    function.__kwdefaults__ = _defaults(named)
+    function.__qualname__ = f"{owner.__qualname__}.__init__"
+    function.__annotations__ = {each.name: each.type for each in every} | {"return": None}
+    return function
+
+
+def _defaults(parameters: Iterable[Field[Any]]) -> dict[str, Any]:
+    """The defaults of those parameters that have one."""
+    values = {each.name: each.default if each.default_factory is MISSING else _FACTORY for each in parameters}
+    return {name: value for name, value in values.items() if value is not MISSING}
 
 
 class _Factory:
@@ -120,22 +192,21 @@ class _Factory:
 _FACTORY = _Factory()
 
 
-def _parameter(one: Field[Any]) -> str:
-    if one.default is not MISSING:
-        return f"{one.name}=_default_{one.name}"
-    return one.name if one.default_factory is MISSING else f"{one.name}=_factory"
-
-
 def _is_assigned(one: Field[Any], owner: Any) -> bool:
     """Whether the constructor gives a value to a field; without slots, a default is in the class."""
     return one.init or one.default_factory is not MISSING or (one.default is not MISSING and "__slots__" in owner.__dict__)
 
 
-def _assignment(one: Field[Any], *, frozen: bool) -> str:
-    name = one.name
-    made = f"_make_{name}()" if one.default_factory is not MISSING else f"_default_{name}"
-    value = made if not one.init else name if one.default_factory is MISSING else f"{made} if {name} is _factory else {name}"
-    return f'_object.__setattr__(self, "{name}", {value})' if frozen else f"self.{name} = {value}"
+def _assignment(one: Field[Any], scope: dict[str, Any], *, frozen: bool) -> str:
+    """A statement of a constructor; what it refers to is added to its scope."""
+    value = one.name
+    if one.default_factory is not MISSING:
+        scope[f"_make_{one.name}"] = one.default_factory
+        value = f"_make_{one.name}() if {one.name} is _factory else {one.name}" if one.init else f"_make_{one.name}()"
+    elif not one.init:
+        scope[f"_default_{one.name}"] = one.default
+        value = f"_default_{one.name}"
+    return f'_set(self, "{one.name}", {value})' if frozen else f"self.{one.name} = {value}"
 
 
 def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
@@ -145,7 +216,9 @@ def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
     return lambda each: tuple([getattr(each, name) for name in names])
 
 
-def _text_of(names: Sequence[str]) -> Callable[[Any], str]:
+def _text(owner: Any) -> Callable[[Any], str]:
+    names = [each.name for each in dataclasses.fields(owner) if each.repr]
+
     @recursive_repr()
     def text(self: Any) -> str:
         return f"{type(self).__qualname__}({', '.join([f'{name}={getattr(self, name)!r}' for name in names])})"
@@ -153,44 +226,63 @@ def _text_of(names: Sequence[str]) -> Callable[[Any], str]:
     return text
 
 
-def _equality_of(values: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any, object], Any]:
+def _equality(owner: Any) -> Callable[[Any, object], Any]:
+    values = _values([each.name for each in dataclasses.fields(owner) if each.compare])
+
     def is_equal(self: Any, other: object) -> Any:
         return values(self) == values(other) if other.__class__ is self.__class__ else NotImplemented
 
     return is_equal
 
 
-def _hash_of(values: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], int]:
+def _hash(owner: Any) -> Callable[[Any], int]:
+    fields_of_owner = dataclasses.fields(owner)
+    values = _values([each.name for each in fields_of_owner if (each.compare if each.hash is None else each.hash)])
+
     def hashed(self: Any) -> int:
         return hash(values(self))
 
     return hashed
 
 
-def _frozen(owner: Any, names: Sequence[str]) -> dict[str, Any]:
-    """The methods of a class whose objects do not change."""
+def _refusal(owner: Any) -> Callable[[Any, str, object], None]:
+    """The method by which objects cannot be changed."""
+    names = [each.name for each in dataclasses.fields(owner)]
 
     def refuse(self: Any, name: str, value: object) -> None:
         if type(self) is owner or name in names:
             raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
         super(owner, self).__setattr__(name, value)
 
+    return refuse
+
+
+def _refusal_to_delete(owner: Any) -> Callable[[Any, str], None]:
+    names = [each.name for each in dataclasses.fields(owner)]
+
     def refuse_to_delete(self: Any, name: str) -> None:
         if type(self) is owner or name in names:
             raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
         super(owner, self).__delattr__(name)
 
-    return {"__setattr__": refuse, "__delattr__": refuse_to_delete}
+    return refuse_to_delete
 
 
-def _state(names: Sequence[str]) -> dict[str, Any]:
-    """The methods by which frozen objects with slots are copied and pickled, of which the attributes would be set otherwise."""
+def _state(owner: Any) -> Callable[[Any], list[Any]]:
+    """The method by which frozen objects with slots are copied and pickled, together with the next one."""
+    names = [each.name for each in dataclasses.fields(owner)]
 
     def state(self: Any) -> list[Any]:
         return [getattr(self, name) for name in names]
+
+    return state
+
+
+def _restoration(owner: Any) -> Callable[[Any, Sequence[Any]], None]:
+    names = [each.name for each in dataclasses.fields(owner)]
 
     def restore(self: Any, state: Sequence[Any]) -> None:
         for name, value in zip(names, state, strict=True):
             object.__setattr__(self, name, value)
 
-    return {"__getstate__": state, "__setstate__": restore}
+    return restore

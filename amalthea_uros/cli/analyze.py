@@ -21,7 +21,6 @@ from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.report.writers.terminal import Terminal
 from amalthea_uros.services.analyze import analyze_files, chain_detail
-from amalthea_uros.services.changed_model import write_changed
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import shortened
 
@@ -124,6 +123,8 @@ def analyze(
             result = replace(result, answer=first_answer(result))
     as_text = result.explanation or (chain_detail(result, chain) if chain is not None else None)
     if target is not None:
+        from amalthea_uros.services.changed_model import write_changed
+
         write_changed(paths, changes, settings, target)
     summary = result.analysis.summary
     show_result(result, outputs, as_text, "" if summary.schedulable is Schedulable.YES else closing_line(summary))

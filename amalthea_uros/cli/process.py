@@ -22,6 +22,8 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 #: How many more objects there are before garbage is collected; usually 700, so that imports alone are scanned dozens of times. The
 #: imports of a command and a small model make about 110,000, so that these are not scanned at all.
 GARBAGE_THRESHOLD = 200_000
+#: numpy would otherwise start a thread for each processor when it is imported, to multiply matrices, of which there are none here.
+_ONE_THREAD = "OPENBLAS_NUM_THREADS"
 #: Somebody who sends so many signals does not want to wait for that.
 _INSISTENCE = 3
 #: The signals so far.
@@ -69,6 +71,7 @@ def _prepare() -> None:
     """Have signals end the process, and let the standard streams take every text; import nothing foreign; collect garbage rarely."""
     forget_working_folder()
     gc.set_threshold(GARBAGE_THRESHOLD)
+    os.environ.setdefault(_ONE_THREAD, "1")
     for name in _SIGNALS:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:

@@ -15,7 +15,6 @@ from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.change import Change
-from amalthea_uros.design.changes.origin import SystemOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.activities import Call, Execute, walk
 from amalthea_uros.perf.distributions import highest, lowest
@@ -31,6 +30,7 @@ from amalthea_uros.timing.scheduling.allocation import allocated_cores, is_witho
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 if TYPE_CHECKING:
+    from amalthea_uros.design.changes.origin import SystemOrigin
     from amalthea_uros.design.description.origin import DescriptionOrigin
 
 #: Examples: a value that is accepted, and which nobody takes for that of his system.
@@ -63,6 +63,11 @@ class MissingValues:
     lacks_schedulers: bool = False
 
 
+def lacks_values(system: System, analysis: Analysis) -> bool:
+    """Whether a process has no bounded response time, or no scheduler is responsible for a core."""
+    return len(_bounded(analysis)) < len(analysis.processes) or _lacks_schedulers(system, analysis)
+
+
 def missing_values(
     origin: DescriptionOrigin | SystemOrigin, analysis: Analysis, given: tuple[Change, ...] = (), unset: Sequence[Change] = ()
 ) -> MissingValues | None:
@@ -75,7 +80,7 @@ def missing_values(
     unset : examples of values that its description does not have
     """
     system = origin.present.system
-    lacks_schedulers = bool(analysis.processes) and not _dispatching(system)
+    lacks_schedulers = _lacks_schedulers(system, analysis)
     trial = _ValueTrial(origin, _bounded(analysis), len(system.processes))
     nothing = MissingValues(given, (), (), lacks_schedulers=True) if lacks_schedulers else None
     if len(trial.before) == len(analysis.processes) or len(analysis.processes) > _EFFORT:
@@ -87,6 +92,10 @@ def missing_values(
         if gained := trial.gained(changes):
             return MissingValues(given, tuple(changes), tuple(gained), lacks_schedulers)
     return nothing
+
+
+def _lacks_schedulers(system: System, analysis: Analysis) -> bool:
+    return bool(analysis.processes) and not _dispatching(system)
 
 
 def _dispatching(system: System) -> list[str]:

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, TypeAlias
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.analyze.impact import Impact, impact
 from amalthea_uros.analyze.response_times.kernel import report_machine_code
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.system import analyze_system
-from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.names import require
@@ -27,9 +25,11 @@ from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
+    from amalthea_uros.analyze.impact import Impact
     from amalthea_uros.analyze.priorities.assignment import Proposal
     from amalthea_uros.analyze.results.explanations import CallbackExplanation, ChainExplanation, ProcessExplanation
     from amalthea_uros.analyze.sensitivity import Sensitivity
+    from amalthea_uros.design.changes.apply import Difference
     from amalthea_uros.design.improvements import Improvements
     from amalthea_uros.design.missing_values import MissingValues
     from amalthea_uros.services.first_answer import FirstAnswer
@@ -168,8 +168,12 @@ def analyze_files(
         there is no bus.
     """
     changed = open_changed(paths, settings, changes, with_bus=with_bus)
-    before = analyze_system(*changed.given) if changed.changes else None
     analysis = _analyzed(changed)
+    effect = None
+    if changed.changes:
+        from amalthea_uros.analyze.impact import impact
+
+        effect = impact(analyze_system(*changed.given), analysis)
     sensitivity, proposals = None, None
     if with_sensitivity:
         from amalthea_uros.analyze.sensitivity import sensitivity as sensitivity_of
@@ -191,7 +195,7 @@ def analyze_files(
         all_methods=all_methods,
         with_metrics=with_metrics,
         differences=changed.differences,
-        impact=None if before is None else impact(before, analysis),
+        impact=effect,
         missing=missing,
     )
 

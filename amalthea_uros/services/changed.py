@@ -2,46 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.files import read_text
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import TEXT
 from amalthea_uros._internal.records import dataclass, replace
-from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change, Changes, Sweep, as_changes
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.changes.origin import ChangeOrigin, SystemOrigin
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
 from amalthea_uros.services.subject import Subject, SystemInput, open_system, require_settings
 from amalthea_uros.timing.basics.settings import Settings
 
 if TYPE_CHECKING:
+    from amalthea_uros.design.changes.apply import Difference
+    from amalthea_uros.design.changes.origin import ChangeOrigin
     from amalthea_uros.design.description.origin import DescriptionOrigin
     from amalthea_uros.design.model_attributes.origin import ModelOrigin
+    from amalthea_uros.metamodel.model import Model
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ChangedSystem:
     """A system that was opened, and what changes of its values make of it.
 
     Attributes
     ----------
-    origin : what the changes act on
+    find_origin : returns what the changes act on
     given : the system and the settings without the changes
     system, settings : with the changes
     differences : what the changes did
     """
 
     opened: SystemInput
-    origin: ChangeOrigin
+    find_origin: Callable[[], ChangeOrigin]
     given: Configuration
     changes: tuple[Change, ...]
     system: System
     settings: Settings
     differences: tuple[Difference, ...]
+
+    @cached_property
+    def origin(self) -> ChangeOrigin:
+        """The system or text that the changes act on."""
+        return self.find_origin()
 
     @property
     def source(self) -> DescriptionOrigin | None:
@@ -83,19 +90,27 @@ def open_changed(
     opened, parsed = open_system(subject, with_bus=with_bus), as_changes(changes)
     given = Configuration(opened.system, settings or Settings())
     require_settings(given.settings, given.system)
-    origin = origin_of(opened, given, with_bus=with_bus)
-    differences = origin.differences(parsed)
-    system, changed_settings = origin.configure(parsed) if parsed else given
-    require_settings(changed_settings, system)
-    return ChangedSystem(
-        opened=_with_new_findings(opened, origin, parsed),
-        origin=origin,
+    find_origin = _origin_finder(opened, given, with_bus=with_bus)
+    unchanged = ChangedSystem(
+        opened=opened,
+        find_origin=find_origin,
         given=given,
         changes=parsed,
-        system=system,
-        settings=changed_settings,
-        differences=differences,
+        system=given.system,
+        settings=given.settings,
+        differences=(),
     )
+    return _changed(unchanged) if parsed else unchanged
+
+
+def _changed(unchanged: ChangedSystem) -> ChangedSystem:
+    """A system with its changes, of which none has been made yet."""
+    origin, changes = unchanged.origin, unchanged.changes
+    differences = origin.differences(changes)
+    system, settings = origin.configure(changes)
+    require_settings(settings, system)
+    opened = _with_new_findings(unchanged.opened, origin, changes)
+    return replace(unchanged, opened=opened, system=system, settings=settings, differences=differences)
 
 
 def _with_new_findings(opened: SystemInput, origin: ChangeOrigin, changes: Sequence[Change]) -> SystemInput:
@@ -108,16 +123,26 @@ def _with_new_findings(opened: SystemInput, origin: ChangeOrigin, changes: Seque
     return opened if new is None else replace(opened, findings=(*opened.model.findings, *new))
 
 
-def origin_of(opened: SystemInput, given: Configuration, *, with_bus: bool = False) -> ChangeOrigin:
-    """The origin that changes of a subject act on: the text of a description, a model, or a system; raises as `description_origin`."""
+def _origin_finder(opened: SystemInput, given: Configuration, *, with_bus: bool) -> Callable[[], ChangeOrigin]:
+    """A function that returns a model, a system, or the text of a description as it is now, on which changes act."""
     if opened.model is not None:
-        from amalthea_uros.design.model_attributes.editable import ModelSource
-        from amalthea_uros.design.model_attributes.origin import ModelOrigin
-
-        return ModelOrigin(given, ModelSource(opened.model, is_own=bool(opened.paths)))
+        return partial(_model_origin, opened.model, given, is_own=bool(opened.paths))
     if opened.assembly is None:
-        return SystemOrigin(given)
-    return description_origin(opened, given.settings, with_bus=with_bus)
+        return partial(_system_origin, given)
+    return partial(_description_origin, opened, _text_of(opened), given.settings, with_bus=with_bus)
+
+
+def _model_origin(model: Model, given: Configuration, *, is_own: bool) -> ChangeOrigin:
+    from amalthea_uros.design.model_attributes.editable import ModelSource
+    from amalthea_uros.design.model_attributes.origin import ModelOrigin
+
+    return ModelOrigin(given, ModelSource(model, is_own=is_own))
+
+
+def _system_origin(given: Configuration) -> ChangeOrigin:
+    from amalthea_uros.design.changes.origin import SystemOrigin
+
+    return SystemOrigin(given)
 
 
 def description_origin(opened: SystemInput, settings: Settings, *, with_bus: bool = False) -> DescriptionOrigin:
@@ -127,10 +152,14 @@ def description_origin(opened: SystemInput, settings: Settings, *, with_bus: boo
     ------
     InvalidArgumentError : the content of a description cannot be written as text.
     """
+    return _description_origin(opened, _text_of(opened), settings, with_bus=with_bus)
+
+
+def _description_origin(opened: SystemInput, text: str, settings: Settings, *, with_bus: bool) -> DescriptionOrigin:
     from amalthea_uros.design.description.origin import DescriptionOrigin
 
     path = opened.paths[0] if opened.paths else TEXT
-    return DescriptionOrigin(text=_text_of(opened), path=path, settings=settings, with_bus=with_bus)
+    return DescriptionOrigin(text=text, path=path, settings=settings, with_bus=with_bus)
 
 
 def _text_of(opened: SystemInput) -> str:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.explanations.chains import explain_chain
-from amalthea_uros.analyze.explanations.processes import explain_process
 from amalthea_uros.analyze.results.analysis import Analysis, Judged
 from amalthea_uros.analyze.results.chains import LIMITED, ChainResult
 from amalthea_uros.analyze.results.explanations import ChainExplanation, ProcessExplanation
@@ -73,6 +72,8 @@ def answer_about(result: AnalysisResult, item: Decisive, *, with_changes: bool =
         is_wire = any(item.name in wire.cores for wire in result.system.network.wires)
         return FirstAnswer(item=item, shares=tuple(sorted(shares, key=lambda each: -each[1])), is_wire=is_wire)
     if isinstance(item, ProcessResult):
+        from amalthea_uros.analyze.explanations.processes import explain_process
+
         return FirstAnswer(item=item, explanation=explain_process(analysis, item.name))
     quantity = LIMITED.get(item.quantity)
     if quantity is None or item.object not in result.system.chains or not item.is_upper:

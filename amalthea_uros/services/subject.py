@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.paths import TEXT, StrPath
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.design.changes.kinds import refuse_wire
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.names import require
@@ -119,8 +118,11 @@ def require_settings(settings: Settings, system: System) -> None:
     if not isinstance(settings, Settings):
         raise TypeError(f"expected Settings, not {type(settings).__name__}; changes of values are given as changes=...")
     require("core", settings.frequencies, system.cores)
-    for core in settings.frequencies:
-        refuse_wire(core, system)
+    if settings.frequencies:
+        from amalthea_uros.design.changes.kinds import refuse_wire
+
+        for core in settings.frequencies:
+            refuse_wire(core, system)
     require("process", settings.factors, system.processes)
     if settings.phases:
         require("callback with a phase", settings.phases, sources(system))

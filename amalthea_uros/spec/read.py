@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -79,10 +80,16 @@ def read_description(path: Path) -> Description:
 
 def read_section(path: Path, kind: type[S]) -> S:
     """A file as a section of some kind; raises as `read_description`."""
-    draft = text_draft(path, description_text(path), kind)
+    draft: Draft[S] = _known_draft(path, description_text(path), kind)
     if draft.section is None or draft.findings:
         raise ReadError(draft.findings)
     return draft.section
+
+
+@lru_cache(maxsize=8)
+def _known_draft(path: Path, text: str, kind: type[Any]) -> Draft[Any]:
+    """A draft; that of a platform is asked for again by each change of a description."""
+    return text_draft(path, text, kind)
 
 
 @dataclass(frozen=True, slots=True)

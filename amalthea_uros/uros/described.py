@@ -9,16 +9,13 @@ from typing import Any
 
 from amalthea_uros._internal.paths import TEXT, folder_of
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.spec.description import Description, RobotController
 from amalthea_uros.spec.known_files import named_file
 from amalthea_uros.spec.platforms import complete
 from amalthea_uros.spec.read import Draft, content_draft, description_text, text_draft
-from amalthea_uros.trace.can.dbc import DbcMessage, read_dbc
-from amalthea_uros.trace.can.frames import EXTENDED
 from amalthea_uros.uros.assemble import Assembly, assemble
-from amalthea_uros.uros.robot import assemble_robot
 from amalthea_uros.uros.transports.can import ForeignFrame
 
 
@@ -127,6 +124,8 @@ def described_section(description: Description, folder: Path, platform: str | No
 
 def _robot(description: Description, folder: Path) -> Described:
     """A robot with several controllers."""
+    from amalthea_uros.uros.robot import assemble_robot
+
     controllers = {each.name: _controller(each, folder) for each in description.controllers}
     assembly = assemble_robot(description, {name: each.assembly for name, each in controllers.items()})
     types = {core: each.type or "" for core, each in assembly.system.cores.items()}
@@ -175,15 +174,6 @@ def database_frames(description: Description, folder: Path) -> tuple[ForeignFram
         return ()
     stated = bus.location("dbc")
     path = named_file("DBC file", bus.dbc, folder, stated)
-    return tuple(_frame(message, stated) for message in read_dbc(path).messages.values())
+    from amalthea_uros.uros.transports.database import frames_of
 
-
-def _frame(message: DbcMessage, stated: Location | None) -> ForeignFrame:
-    return ForeignFrame(
-        name=message.name,
-        identifier=message.identifier & ~EXTENDED,
-        extended=bool(message.identifier & EXTENDED),
-        data_bytes=message.length,
-        period=message.cycle_time,
-        origin=stated,
-    )
+    return frames_of(path, stated)

@@ -5,6 +5,7 @@ import dataclasses
 import inspect
 import pickle
 from dataclasses import FrozenInstanceError, field
+from typing import ClassVar
 
 import pytest
 
@@ -108,3 +109,18 @@ def test_nothing_is_compiled_before_the_first_object():
     assert not inspect.isfunction(vars(Unused)["__init__"])
     assert Unused(1).a == 1
     assert inspect.isfunction(vars(Unused)["__init__"])
+
+
+def test_fields_are_examined_when_somebody_asks_for_them():
+    @dataclass(frozen=True, slots=True)
+    class Unused:
+        a: int
+        kinds: ClassVar[tuple[str, ...]] = ("a",)
+
+    class Plain(Unused):
+        pass
+
+    assert not isinstance(vars(Unused)["__dataclass_fields__"], dict)
+    assert [each.name for each in dataclasses.fields(Plain)] == ["a"]
+    assert isinstance(vars(Unused)["__dataclass_fields__"], dict)
+    assert Unused.kinds == ("a",)

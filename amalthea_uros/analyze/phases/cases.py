@@ -248,6 +248,10 @@ def _selected(phase: int, prescaler: int, jobs: int) -> tuple[bool, ...]:
     return tuple((job - phase) % prescaler == 0 for job in range(1, jobs + 1))
 
 
+#: In the place of the number of what happens in a slot.
+_NOT_COUNTED = -1
+
+
 class _Slots:
     """The slots of some tasks over a cycle."""
 
@@ -256,8 +260,10 @@ class _Slots:
         self._length = length
         self._cycle = lcm(length, *(task.cycle for task in tasks.values()))
         self._releases = {name: self._slots_of(task) for name, task in tasks.items()}
-        self._executed: dict[tuple[str, tuple[int, ...]], list[tuple[bool, ...]]] = {}
-        self._contents: dict[tuple[Hashable, ...], int] = {}
+        self._columns: dict[tuple[str, tuple[int, ...]], list[int]] = {}
+        self._cells: dict[Hashable, int] = {}
+        self._contents: dict[tuple[int, ...], int] = {}
+        self._slots: dict[tuple[tuple[int, ...], ...], tuple[int, ...]] = {}
         self._rows: dict[tuple[int, ...], tuple[int, ...]] = {}
 
     def row(self, combination: Mapping[ExternalInput, int], name: str | None = None) -> tuple[int, ...]:
@@ -267,30 +273,38 @@ class _Slots:
         ----------
         name : only slots in which this process is released count; None: all
         """
-        found: list[list[Hashable]] = [[] for _ in range(self._cycle // self._length)]
-        for task in self._tasks.values():
-            for (slot, at), executed in zip(self._releases[task.name], self._jobs(task, combination), strict=True):
-                found[slot].append((task.name, at, executed))
-        counted = range(len(found)) if name is None else {slot for slot, _ in self._releases[name]}
-        contents = (tuple(jobs) if slot in counted else () for slot, jobs in enumerate(found))
-        row = tuple(self._contents.setdefault(jobs, len(self._contents)) for jobs in contents)
+        row = self._numbered(tuple([task.phases(combination) for task in self._tasks.values()]))
+        if name is not None:
+            counted = {slot for slot, _ in self._releases[name]}
+            row = tuple([number if slot in counted else _NOT_COUNTED for slot, number in enumerate(row)])
         if row not in self._rows:
             start = least_rotation(row)
             self._rows[row] = row[start:] + row[:start]
         return self._rows[row]
+
+    def _numbered(self, phases: tuple[tuple[int, ...], ...]) -> tuple[int, ...]:
+        """The contents of the slots, by numbers, if the counters of the tasks select these first jobs."""
+        if phases not in self._slots:
+            columns = [self._column(task, own) for task, own in zip(self._tasks.values(), phases, strict=True)]
+            contents = self._contents
+            self._slots[phases] = tuple([contents.setdefault(jobs, len(contents)) for jobs in zip(*columns, strict=True)])
+        return self._slots[phases]
 
     def _slots_of(self, task: _SlotTask) -> list[tuple[int, Time]]:
         """For each job of a cycle, the slot in which it is released, and when in the slot."""
         period, offset = task.releases.period, task.releases.offset
         return [divmod(offset + job * period, self._length) for job in range(self._cycle // period)]
 
-    def _jobs(self, task: _SlotTask, combination: Mapping[ExternalInput, int]) -> Sequence[tuple[bool, ...]]:
-        """What each job of a cycle does."""
-        phases = task.phases(combination)
+    def _column(self, task: _SlotTask, phases: tuple[int, ...]) -> list[int]:
+        """When in each slot a task is released, and what its jobs then do, by numbers."""
         key = (task.name, phases)
-        if key not in self._executed:
-            self._executed[key] = task.executed(phases, len(self._releases[task.name]))
-        return self._executed[key]
+        if key not in self._columns:
+            releases = self._releases[task.name]
+            cells: list[tuple[Hashable, ...]] = [()] * (self._cycle // self._length)
+            for (slot, at), executed in zip(releases, task.executed(phases, len(releases)), strict=True):
+                cells[slot] += ((at, executed),)
+            self._columns[key] = [self._cells.setdefault(jobs, len(self._cells)) for jobs in cells]
+        return self._columns[key]
 
 
 def least_rotation(row: Sequence[int]) -> int:

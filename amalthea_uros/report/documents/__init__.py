@@ -36,12 +36,12 @@ DOCUMENTS = {
     "Optimization": "search.optimization_document",
     "PathsResult": "explanation.paths_document",
     "ReportContent": "summary.summary_document",
-    "Proposal": "analysis.proposal_document",
+    "Proposal": "changes.proposal_document",
     "RulesResult": "findings.rules_document",
     "Simulation": "simulation.simulation_alone",
     "SimulationResult": "simulation.simulation_document",
     "SweepResult": "search.sweep_document",
-    "WhatIf": "analysis.what_if_document",
+    "WhatIf": "changes.what_if_document",
 }
 
 

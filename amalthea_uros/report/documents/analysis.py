@@ -6,25 +6,18 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from math import ceil
 
-from amalthea_uros.analyze.impact import Effect, Impact
-from amalthea_uros.analyze.priorities.assignment import Proposal, ProposalOutcome
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric, ProcessorResult, ProcessResult, RequirementResult
-from amalthea_uros.analyze.sensitivity import MAX_FACTOR, Sensitivity
 from amalthea_uros.executors.results import ExecutorResult, HandleResult
 from amalthea_uros.judge.verdict import WORST_FIRST, Verdict
 from amalthea_uros.report.basics.document import (
-    Badge,
-    Block,
     Cell,
     ResultDocument,
     Section,
     Sentences,
     Table,
-    Tone,
     document,
     flaws,
-    lines,
     section,
     table,
 )
@@ -51,16 +44,13 @@ from amalthea_uros.report.wording.cells import (
 from amalthea_uros.report.wording.chains import CHAINS_HEADING, LATENCY_COLUMNS, headline, latency_cells, message_chain_row
 from amalthea_uros.report.wording.chains import MESSAGE_COLUMNS as MESSAGE_COLUMNS
 from amalthea_uros.report.wording.closing_line import closing_line
-from amalthea_uros.report.wording.impact import impact_cells, unchanged_text
 from amalthea_uros.services.analyze import AnalysisResult, analysis_result
-from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.units import Time, time_text
 
 BAR = 20
 HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
 _CALLBACKS = "Callbacks (from the activation of the process to the end of the callback)"
-_EFFECTS = {Effect.BETTER: Tone.GOOD, Effect.WORSE: Tone.BAD, Effect.UNKNOWN: Tone.UNKNOWN}
 
 
 def analysis_document(result: AnalysisResult) -> ResultDocument:
@@ -81,13 +71,7 @@ def analysis_document(result: AnalysisResult) -> ResultDocument:
             *(map(_metrics, analysis.processes) if result.with_metrics else ()),
             section(CHAINS_HEADING, _chains(analysis)),
             section("Requirements", _requirements(analysis)),
-            *([] if result.impact is None else [impact_section(result.impact)]),
-            *(
-                []
-                if result.sensitivity is None
-                else [section("Maximum factors on execution times", _factors(result.sensitivity))]
-            ),
-            *map(priorities_section, result.proposals or ()),
+            *_on_request(result),
             section("Methods", Sentences(list(dict.fromkeys(_methods_of_responses(analysis))))),
             section("Assumptions", Sentences(analysis.assumptions)),
             missing_section(result),
@@ -96,20 +80,23 @@ def analysis_document(result: AnalysisResult) -> ResultDocument:
     )
 
 
+def _on_request(result: AnalysisResult) -> Iterator[Section]:
+    """The sections that only some runs ask for, so that only these import their modules."""
+    if result.impact is None and result.sensitivity is None and not result.proposals:
+        return
+    from amalthea_uros.report.documents.changes import factors_section, impact_section, priorities_section
+
+    if result.impact is not None:
+        yield impact_section(result.impact)
+    if result.sensitivity is not None:
+        yield factors_section(result.sensitivity)
+    yield from map(priorities_section, result.proposals or ())
+
+
 def analysis_alone(analysis: Analysis) -> ResultDocument:
     """The same of something that is not in files, after what is wrong with it."""
     alone = analysis_document(analysis_result(analysis))
     return document((flaws(analysis.findings), *alone.sections), alone.closing)
-
-
-def what_if_document(result: WhatIf) -> ResultDocument:
-    """What was changed, and what that does to the results."""
-    return document((section("", lines(*map(str, result.differences))), impact_section(result.impact)))
-
-
-def proposal_document(proposal: Proposal) -> ResultDocument:
-    """Better priorities for the tasks of a scheduler, or why there are none."""
-    return document([priorities_section(proposal)])
 
 
 def _first_answer(result: AnalysisResult) -> Iterator[Section]:
@@ -367,57 +354,6 @@ def _value(requirement: RequirementResult) -> str:
     if lower == upper or requirement.verdict is Verdict.MET or lower is None or upper is None:
         return at_most(requirement.value, limit) if requirement.is_upper else at_least(requirement.value, limit)
     return f"{at_least(lower, limit)} to {at_most(upper, limit)}"
-
-
-def impact_section(impact: Impact, remark: str = "") -> Section:
-    """What a change does to the results."""
-    title = "Before and after the change" + (f" ({remark})" if remark else "")
-    return section(title, impact_table(impact), Sentences([unchanged_text(impact)]))
-
-
-def impact_table(impact: Impact) -> Table:
-    """A row for each figure that changed."""
-    rows: list[tuple[Cell, ...]] = [
-        (*found[:-2], Badge(found[-2], _EFFECTS.get(row.effect, Tone.NEUTRAL)), found[-1])
-        for row, found in zip(impact.rows, impact_cells(impact), strict=True)
-    ]
-    return table("Results before and after the change", ("object", "quantity", ">before", ">after", "effect", "claim"), rows)
-
-
-def _factors(found: Sensitivity) -> Table:
-    """By how much execution times can increase."""
-    rows = [("all together", _factor(found.everything), "", "")]
-    rows += [
-        (name, _factor(factor), at_least(found.execution_times[name]), _longest(found, name))
-        for name, factor in found.processes.items()
-    ]
-    return table("Maximum factors", ("process", ">factor", ">execution time", ">may grow to"), rows)
-
-
-def _longest(found: Sensitivity, name: str) -> str:
-    factor = found.processes[name]
-    return "" if factor is None or factor >= MAX_FACTOR else at_least(found.longest(name))
-
-
-def _factor(factor: Fraction | None) -> str:
-    if factor is None:
-        return "none"
-    return f"{float(factor):.3f}" if factor < MAX_FACTOR else f"{MAX_FACTOR} or more"
-
-
-def priorities_section(proposal: Proposal) -> Section:
-    """The proposed priorities of the tasks of a core."""
-    return section(f"Priorities on {proposal.core}", _priorities(proposal))
-
-
-def _priorities(proposal: Proposal) -> Block:
-    if proposal.outcome is ProposalOutcome.KEPT:
-        return Sentences(["the present priorities meet all deadlines"])
-    if proposal.priorities is None:
-        return Sentences([f"no proposal: {proposal.reason}"])
-    ordered = sorted(proposal.priorities.items(), key=lambda item: -item[1])
-    rows = [(name, UNKNOWN if (now := proposal.current[name]) is None else str(now), str(to)) for name, to in ordered]
-    return table("Proposed priorities", ("task", ">now", ">proposed"), rows)
 
 
 def methods(analysis: Analysis) -> list[str]:

@@ -108,7 +108,7 @@ _IDENTIFYING = {"period": "every ", "execution_time": "", "priority": "priority 
 
 def diff_document(result: DiffResult) -> ResultDocument:
     """What changes the timing, all changes grouped by object, how many there are, and what they do to the results."""
-    from amalthea_uros.report.documents.analysis import impact_section
+    from amalthea_uros.report.documents.changes import impact_section
 
     groups: dict[tuple[Element | None, Element | None], list[ModelChange]] = {}
     for change in result.changes:

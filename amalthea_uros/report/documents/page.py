@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from amalthea_uros.analyze.explanations.processes import explain_process
-from amalthea_uros.analyze.impact import impact
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ProcessExplanation
@@ -29,7 +28,6 @@ from amalthea_uros.report.documents.analysis import (
     cores_of,
     execution_times,
     handles,
-    impact_section,
     latencies_of_messages,
     methods,
     response_times,
@@ -63,6 +61,8 @@ def _changes_section(content: ReportContent) -> Section | None:
     """The values before and after, and the verdict without the changes."""
     if content.before is None:
         return None
+    from amalthea_uros.report.documents.changes import comparison_section
+
     rows = [(each.target, each.before, each.after) for each in content.differences]
     return Section(
         "changes",
@@ -70,7 +70,7 @@ def _changes_section(content: ReportContent) -> Section | None:
         "This report is about the system with these changes; the files are as they were.",
         (
             table("Changed values", ("value", "before", "after"), rows),
-            *impact_section(impact(content.before, content.analysis)).blocks,
+            *comparison_section(content.before, content.analysis).blocks,
             Sentences([f"Before the changes: {closing_line(content.before.summary)}"]),
         ),
     )

@@ -24,7 +24,7 @@ from amalthea_uros.report.basics.document import (
     section,
     table,
 )
-from amalthea_uros.report.documents.analysis import impact_section
+from amalthea_uros.report.documents.changes import impact_section
 from amalthea_uros.report.wording.cells import (
     badge,
     by_core_and_priority,

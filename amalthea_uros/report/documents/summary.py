@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.analyze.impact import impact
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.basics.document import Block, ResultDocument, Section, Sentences, Table, document, section, table
-from amalthea_uros.report.documents.analysis import impact_section, latencies_of_messages
+from amalthea_uros.report.documents.analysis import latencies_of_messages
 from amalthea_uros.report.documents.judged import limits_table
 from amalthea_uros.report.documents.page import chains_table
 from amalthea_uros.report.documents.simulation import REMINDER
@@ -38,7 +37,9 @@ def _sections(content: ReportContent) -> Iterator[Section]:
     if content.before is not None:
         rows = [(each.target, each.before, each.after) for each in content.differences]
         yield section("Changes", table("", ("value", "before", "after"), rows))
-        found = impact_section(impact(content.before, content.analysis))
+        from amalthea_uros.report.documents.changes import comparison_section
+
+        found = comparison_section(content.before, content.analysis)
         before = Sentences([f"Before the changes: {closing_line(content.before.summary)}"])
         yield section(found.title, *(_shown(block, _MOST_CHANGES) for block in found.blocks), before)
     limits = limits_table(content.analysis)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 from amalthea_uros._internal.ports import Port, known_ports
@@ -15,6 +16,7 @@ _CAN_FD_MTU = 63
 _INPUT, _OUTPUT = "RMW_UXRCE_STREAM_HISTORY_INPUT", "RMW_UXRCE_STREAM_HISTORY_OUTPUT"
 
 
+@cache
 def rows() -> Mapping[str, OptionRow]:
     """The table of options."""
     return option_rows(Path(__file__).parent)
@@ -100,7 +102,7 @@ class XrceBuild:
             case "RMW_UXRCE_PUBLISH_RELIABLE_TIMEOUT" if middleware.reliable.timeout is not None:
                 return row.stated(middleware.limits.model_copy(update={row.name: middleware.reliable.timeout}))
         stated = row.stated(middleware.limits)
-        if stated is None and row.name == self.mtu_option and middleware.limits.RMW_UXRCE_MTU is not None:
+        if stated is None and middleware.limits.RMW_UXRCE_MTU is not None and row.name == self.mtu_option:
             return middleware.limits.RMW_UXRCE_MTU // 8
         return stated
 
