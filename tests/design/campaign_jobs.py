@@ -12,11 +12,10 @@ def square(run):
 
 
 def slow_first(run, folder):
-    """The first run takes until another one has been executed, however long the other process takes to start."""
+    """The first run takes until the outcome of another one is in the folder, however long the other process takes to start."""
     deadline = time.monotonic() + 60
     while run.number == 1 and not any(folder.iterdir()) and time.monotonic() < deadline:
         time.sleep(0.01)
-    (folder / str(run.number)).touch()
     return {"number": run.number}
 
 
