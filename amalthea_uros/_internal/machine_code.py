@@ -34,7 +34,7 @@ class CompilationEffort:
     sources : the files with its code, the one that numba knows first
     function : the name under which numba keeps its machine code, as a pattern
     compiling : about how many seconds numba takes to compile it for the first time
-    spent : seconds that it has taken as Python in this process
+    spent : seconds of processor time that it has taken as Python in this process
     reported : whether machine code was used when that was logged last
     """
 

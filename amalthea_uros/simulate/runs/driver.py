@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from time import perf_counter
+from time import thread_time
 from typing import TypeAlias, cast
 
 import numpy as np
@@ -97,14 +97,14 @@ class KernelDriver:
 
     def run(self) -> None:
         """Run to the end, or until nothing can be simulated any more."""
-        began = perf_counter()
+        began = thread_time()
         try:
             self._run_to_end(began)
         finally:
             self._await_taker()
             if not self.is_compiled:
                 effort = machine_code.effort()
-                effort.spent += perf_counter() - began
+                effort.spent += thread_time() - began
                 effort.report(is_used=False)
 
     def _run_to_end(self, began: float) -> None:
@@ -118,7 +118,7 @@ class KernelDriver:
                 count = self._prepare(time)
                 self._run_window(time)
                 if not self.is_compiled and not self.has_ended_early:
-                    self._consider_machine_code(perf_counter() - began, (self.until - time) / time)
+                    self._consider_machine_code(thread_time() - began, (self.until - time) / time)
                 if 2 * count < _OCCURRENCES:
                     window *= 2
                 elif count > 2 * _OCCURRENCES:
@@ -154,7 +154,7 @@ class KernelDriver:
 
         Parameters
         ----------
-        seconds, times_left : what the run has taken so far, and how many times as much is left
+        seconds, times_left : of processor time that the run has taken so far, and how many times as much is left
         """
         if machine_code.is_worth_it(seconds, seconds * times_left):
             machine_code.effort().report(is_used=True, left=seconds * times_left)
