@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -84,6 +84,8 @@ def false_claims(model: RandomModel, tally: Tally | None = None, most: int = MOS
         text, features = model.told()
         path.write_text(with_limits(text, facts, limits), encoding="utf-8")
         is_told = text == model.text
+        if "no priority" in features:
+            facts, limits = _without_lateness(facts), [each for each in limits if "lateness" not in each.key]
         found = wrong_answers(path, facts, limits, tally, features, is_told=is_told)
         if is_told and model.constraints and is_determined(facts):
             path.write_text(with_limits(text, facts, list(loose_limits_of(facts))), encoding="utf-8")
@@ -92,6 +94,14 @@ def false_claims(model: RandomModel, tally: Tally | None = None, most: int = MOS
     if found and not facts.is_complete and most < MANY_VARIANTS:
         return false_claims(model, most=MANY_VARIANTS)
     return found
+
+
+def _without_lateness(facts: Facts) -> Facts:
+    """A process whose deadline is erased has the response time that is required of it as its deadline."""
+    least, greatest = (
+        {key: value for key, value in found.items() if "lateness" not in key} for found in (facts.least, facts.greatest)
+    )
+    return replace(facts, least=least, greatest=greatest)
 
 
 def falsely_missed(path: Path, facts: Facts) -> list[str]:
