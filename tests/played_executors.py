@@ -263,7 +263,12 @@ class Played:
             if listens:
                 session.store()
         if self.is_shared:
-            kernel.unlock(session.mutex)
+            yield from self._unlock()
+
+    def _unlock(self):
+        """Release the session; a thread that has waited for it and has a higher priority goes first, whatever else takes no time."""
+        self.kernel.unlock(self.session.mutex)
+        yield Run(0)
 
     def _is_triggered(self):
         ready = {each.handle.name for each in self.entities if each.ready}
@@ -332,7 +337,7 @@ class Played:
         else:
             yield Until(end)
         if self.is_shared:
-            self.kernel.unlock(self.session.mutex)
+            yield from self._unlock()
 
 
 def play(executors, spans, horizon, *, random=None, preempting=(), priorities=None, delays=None, start=None):

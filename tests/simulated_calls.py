@@ -8,11 +8,13 @@ import test_whole_way
 from random_executors import application
 
 from amalthea_uros.executors.semantics.steps import with_steps
+from amalthea_uros.perf.stimuli import Periodic
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.runs.execution import SimulationRun
 from amalthea_uros.timing.activation.releases import with_first_arrivals
 from amalthea_uros.timing.context import TimingContext
+from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import Duration
 
 
@@ -52,12 +54,6 @@ def calls(system, until):
     }
 
 
-def is_bare(app):
-    """Whether iterations of an executor can take no time, which the player passes over; but for what sends outside of callbacks."""
-    spinning = (each.name for each in app.system.executors if each.place is None or each.place.thread == each.name)
-    return any(app.spins[name][0] == 0 for name in spinning)
-
-
 def first_difference(simulated, played, tolerance=0):
     """Where two lists of times differ; the last call can be cut off by the end. None if they do not."""
     if abs(len(simulated) - len(played)) > 1:
@@ -67,23 +63,44 @@ def first_difference(simulated, played, tolerance=0):
 
 
 def fixed(seed):
-    """A random application without publications, in which all phases are known and no two things occur at the same instant."""
+    """A random application without publications, in which all phases are known and no two things occur at the same instant.
+
+    Execution times are whole microseconds. Whatever else has a period, a phase or a sleep gets a random part of a microsecond, so that
+    two things that do not cause each other do not occur at the same picosecond: who is first then is not defined.
+    """
     chance = random.Random(seed)
     app = application(chance)
-    executors = []
-    for executor in app.system.executors:
-        handles = [
-            # The player pays for taking what is not there, the model does not.
-            replace(
-                each,
-                publications=(),
-                phase=chance.randrange(1, each.interval) if each.interval else None,
-                take=None if each.always else each.take,
-            )
-            for each in executor.handles
-        ]
-        executors.append(replace(executor, handles=tuple(handles)))
-    return replace(app, system=replace(app.system, executors=tuple(executors)))
+
+    def apart(time):
+        return time + chance.randrange(1, US) if time else time
+
+    executors = [_fixed(executor, apart, chance) for executor in app.system.executors]
+    preempting, ticks = [], {}
+    for number, (priority, period, offset, *cost) in enumerate(app.preempting):
+        tick = Periodic(name=f"P{number}_tick", period=apart(period), offset=offset + chance.randrange(1, US))
+        preempting.append((priority, tick.period, tick.offset, *cost))
+        ticks[tick.name] = tick
+    stimuli = tuple(ticks.get(each.name, each) for each in app.system.stimuli.stimuli)
+    system = replace(app.system, executors=tuple(executors), stimuli=replace(app.system.stimuli, stimuli=stimuli))
+    return replace(app, system=system, preempting=preempting)
+
+
+def _fixed(executor, apart, chance):
+    handles = []
+    for each in executor.handles:
+        interval = apart(each.interval)
+        phase = chance.randrange(1, interval) if interval else None
+        # The player pays for taking what is not there, the model does not.
+        take = None if each.always else each.take
+        handles.append(replace(each, publications=(), interval=interval, phase=phase, take=take))
+    loop, place = executor.loop, executor.place
+    if loop.sleep:
+        sleep = apart(loop.sleep)
+        loop = replace(loop, sleep=sleep, pace=loop.pace and loop.pace + sleep - loop.sleep)
+    loop = replace(loop, period=apart(loop.period))
+    if place is not None:
+        place = replace(place, sleep=apart(place.sleep))
+    return replace(executor, handles=tuple(handles), loop=loop, place=place)
 
 
 def on_wires(seed):

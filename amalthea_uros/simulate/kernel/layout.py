@@ -146,9 +146,9 @@ NOT_LISTENING, BEGINS_TO_LISTEN, HAS_ASKED, LISTENS = range(4)
 # Its handles, and sets of them: it calls if all of one set are ready.
 HANDLES, HANDLES_END, TRIGGER_SETS, TRIGGER_SETS_END, IS_TRIGGERED = range(21, 26)
 # Its loop: a stream of sleeps, the least distance of their ends, the last end, a period, the time up to which it has planned, to what
-# that sleep is cut, and what begins an iteration; whether that is one of its own, or of the next executor of its thread.
+# that sleep is cut, and what begins the next iteration of its thread; the process of that, its own or of another executor.
 SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM = range(26, 34)
-KEEPS_TURN = 34
+NEXT_PROCESS = 34
 # If it is a thread of an executor of the host: that one, which handle it calls, and when that was released.
 THREAD_OF, CALLED_HANDLE, CALLED_SINCE, EXECUTOR_SIZE = range(35, 39)
 

@@ -95,7 +95,7 @@ class ExecutorRecords:
             layout.INVOCATION: -1,
             layout.SLEEP_RESOLUTION: time(SLEEP_RESOLUTION),
             layout.LOOP_STIMULUS: resources.stimuli[iterations_name(following.name)],
-            layout.KEEPS_TURN: int(following is executor),
+            layout.NEXT_PROCESS: resources.processes.get(following.task, 0),
             layout.LOOP_ALARM: self.messages.lines.alarm(layout.NEXT_ITERATION, record, at=begin),
         }
         image.put(record, fields)
