@@ -23,6 +23,16 @@ def plain_topic(topic: str | None) -> str:
     return (topic or "").removeprefix("/")
 
 
+def request_topic(service: str) -> str:
+    """The topic of the requests of a service or an action: ROS 2 carries a service as two topics."""
+    return f"{plain_topic(service)}/request"
+
+
+def response_topic(service: str) -> str:
+    """The topic of the responses of a service, or of the results of an action."""
+    return f"{plain_topic(service)}/response"
+
+
 class WireKind(StrEnum):
     """What a wire is."""
 
@@ -137,7 +147,7 @@ class Transmission(Named):
 
     Attributes
     ----------
-    topic : or service; None for acknowledgements, heartbeats and foreign frames
+    topic : a service has one for requests and one for responses; None for acknowledgements, heartbeats and foreign frames
     callback : that receives or sends it
     acknowledges : the transmission that it acknowledges; None for others
     length : in bytes, of the message of the middleware with its headers

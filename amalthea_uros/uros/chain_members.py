@@ -15,10 +15,11 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk
 from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, ProcessEvent
-from amalthea_uros.perf.network import Direction, Network, Purpose, plain_topic
+from amalthea_uros.perf.network import Direction, Network, Purpose, plain_topic, request_topic, response_topic
 from amalthea_uros.perf.qualified import qualified, qualified_name
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.uros.application.callbacks import Callback, body_name
+from amalthea_uros.uros.application.messages import Message
 from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.executor_runnables import notification_name
 from amalthea_uros.uros.assembly.planned import PlannedIsr, PlannedTask
@@ -136,7 +137,7 @@ class Topics:
 
     Attributes
     ----------
-    receivers, senders : the callbacks by topic, without a slash before it
+    receivers, senders : the callbacks by topic, without a slash before it; a service has its own name, too, besides its topics
     network : with the transmissions of their messages
     """
 
@@ -151,9 +152,11 @@ class Topics:
         senders: dict[str, list[str]] = {}
         for callback in callbacks:
             if callback.incoming is not None:
-                receivers.setdefault(plain_topic(callback.incoming.topic), []).append(callback.name)
+                for name in _names(callback.incoming):
+                    receivers.setdefault(name, []).append(callback.name)
             for message in callback.outgoing:
-                senders.setdefault(plain_topic(message.topic), []).append(callback.name)
+                for name in _names(message):
+                    senders.setdefault(name, []).append(callback.name)
         return cls(receivers, senders, network)
 
     @property
@@ -197,17 +200,19 @@ class Topics:
 
     def _message(self, topic: str, callback: str, direction: Direction) -> MessageOfTopic:
         is_received = direction is Direction.TO_CONTROLLER
+        names = {plain_topic(topic), request_topic(topic), response_topic(topic)}
         name = f"{plain_topic(topic)}_{'received' if is_received else 'sent'}_by_{callback}"
         for each in self.network.transmissions:
-            is_same = (each.direction, each.callback, plain_topic(each.topic or "")) == (
-                direction,
-                callback,
-                plain_topic(topic),
-            )
-            if is_same and each.purpose is Purpose.DATA:
+            is_of_callback = (each.direction, each.callback, each.purpose) == (direction, callback, Purpose.DATA)
+            if is_of_callback and plain_topic(each.topic) in names:
                 change = ProcessChange.ACTIVATE if is_received else ProcessChange.TERMINATE
                 return MessageOfTopic(ProcessEvent(name=name, process=each.name, change=change), callback, each.processes)
         return MessageOfTopic(CustomEvent(name=name), callback)
+
+
+def _names(message: Message) -> Iterable[str]:
+    """The names that a path can use for a message: its topic, and the service."""
+    return dict.fromkeys((plain_topic(message.topic), plain_topic(message.sent_as)))
 
 
 class ChainMembers(NamedTuple):

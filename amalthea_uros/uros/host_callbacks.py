@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.perf.executors import HandleKind
-from amalthea_uros.perf.network import plain_topic
+from amalthea_uros.perf.network import plain_topic, request_topic, response_topic
 from amalthea_uros.spec import host as spec
 
 AnyCallback = spec.HostSubscription | spec.HostTimer | spec.HostService | spec.HostClient
@@ -28,23 +28,15 @@ def kind_of(section: AnyCallback) -> HandleKind:
 def topic_of(section: AnyCallback) -> str | None:
     """The topic whose messages call a callback; None of a timer."""
     if isinstance(section, spec.HostService):
-        return _request(section.service)
+        return request_topic(section.service)
     if isinstance(section, spec.HostClient):
-        return _response(section.service)
+        return response_topic(section.service)
     return plain_topic(section.topic) if isinstance(section, spec.HostSubscription) else None
 
 
 def published_by(section: AnyCallback) -> Iterator[str]:
     """The topics that a callback publishes at its end, with its requests and its response."""
     yield from map(plain_topic, section.publishes)
-    yield from map(_request, section.calls)
+    yield from map(request_topic, section.calls)
     if isinstance(section, spec.HostService):
-        yield _response(section.service)
-
-
-def _request(service: str) -> str:
-    return f"{plain_topic(service)}/request"
-
-
-def _response(service: str) -> str:
-    return f"{plain_topic(service)}/response"
+        yield response_topic(section.service)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import combinations
+from typing import TypeAlias
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.perf.network import plain_topic
+from amalthea_uros.perf.network import plain_topic, request_topic, response_topic
 from amalthea_uros.spec import host as spec
 from amalthea_uros.spec.application import NodeSection
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.host_callbacks import AnyCallback, callbacks_of, published_by, topic_of
+
+AnyNode: TypeAlias = spec.HostNodeSection | NodeSection
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,25 +71,34 @@ class HostChecks:
         services = [(node, each) for node in nodes for each in node.services]
         clients = [(node, each) for node in nodes for each in node.clients]
         problems.unique("service of the host", ((each.service, each.location("service")) for _, each in services))
-        names = {each.service for _, each in services}
-        callers = [(node, each, service) for node in nodes for each in callbacks_of(node) for service in each.calls]
-        for _, caller, service in callers:
-            if service not in names:
-                problems.undefined("service of the host", service, names, caller.location("calls"))
-        for node, client in clients:
-            others = {other.name for other, _, service in callers if service == client.service and other is not node}
-            others |= {other.name for other, each in clients if each.service == client.service and other is not node}
-            if client.service not in names:
-                problems.undefined("service of the host", client.service, names, client.location("service"))
-            elif others:
-                message = f"the service {client.service!r} is called in the nodes {', '.join(sorted({node.name, *others}))}"
-                problems.error(
+        names = {plain_topic(each.service) for _, each in services}
+        names |= {plain_topic(each.name) for node in self.nodes for each in (*node.services, *node.action_servers)}
+        calls = [(node, each, service) for node in nodes for each in callbacks_of(node) for service in each.calls]
+        for _, caller, service in calls:
+            if plain_topic(service) not in names:
+                problems.undefined("service", service, names, caller.location("calls"))
+        for _, client in clients:
+            if plain_topic(client.service) not in names:
+                problems.undefined("service", client.service, names, client.location("service"))
+        self._check_callers([(node, service) for node, _, service in calls], names)
+        problems.unique("client of a service", ((each.service, each.location("service")) for _, each in clients))
+
+    def _check_callers(self, calls: Iterable[tuple[AnyNode, str]], services: Collection[str]) -> None:
+        """Report clients of services that other nodes call, too."""
+        nodes: list[AnyNode] = [*self.section.nodes, *self.nodes]
+        clients = [(node, each.service, each.location("service")) for node in nodes for each in node.clients]
+        clients += [(node, each.action, each.location("action")) for node in self.nodes for each in node.action_clients]
+        callers = [*calls, *((node, service) for node, service, _ in clients)]
+        for _, service, location in clients:
+            called = {id(other): other.name for other, each in callers if plain_topic(each) == plain_topic(service)}
+            if len(called) > 1 and plain_topic(service) in services:
+                message = f"the service {service!r} is called in the nodes {', '.join(sorted(called.values()))}"
+                self.problems.error(
                     "APP003",
                     f"{message}, but which response is for which of them is not covered",
-                    client.location("service"),
-                    "Describe calls and the client of a service in one node.",
+                    location,
+                    "Describe calls and the client of a service in one node, or a service of its own for each of them.",
                 )
-        self.problems.unique("client of a service", ((each.service, each.location("service")) for _, each in clients))
 
     def _check_sources(self) -> None:
         """Report topics whose rate follows from what publishes them, and those that nothing publishes or takes."""
@@ -96,6 +108,11 @@ class HostChecks:
         published = {topic for each in self._callbacks() for topic in published_by(each)}
         published |= {plain_topic(each.topic) for node in nodes for each in node.publishers}
         taken = {plain_topic(each.topic) for node in nodes for each in node.subscriptions}
+        called = {each.service for node in nodes for each in node.clients}
+        called |= {each.action for node in nodes for each in node.action_clients}
+        served = {each.name for node in nodes for each in (*node.services, *node.action_servers)}
+        published |= {*map(request_topic, called), *map(response_topic, served)}
+        taken |= {*map(response_topic, called), *map(request_topic, served)}
         taken |= {own for each in self._callbacks() if (own := topic_of(each)) is not None}
         for name, topic in topics.items():
             if name not in published | taken:

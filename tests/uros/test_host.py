@@ -273,8 +273,8 @@ def test_requests_and_responses_of_a_service_are_messages():
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("calls: [plan]", "calls: [plans]", "undefined service of the host 'plans'"),
-        ("{name: On_Plan, service: plan", "{name: On_Plan, service: plane", "undefined service of the host 'plane'"),
+        ("calls: [plan]", "calls: [plans]", "undefined service 'plans'"),
+        ("{name: On_Plan, service: plan", "{name: On_Plan, service: plane", "undefined service 'plane'"),
         ("execution_time: 20 ms}", "execution_time: 20 ms, calls: [plan]}", "is called in the nodes planner, user"),
     ],
 )

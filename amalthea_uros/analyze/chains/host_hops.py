@@ -18,6 +18,7 @@ from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.results import HandleResult, Hop, HopKind
 from amalthea_uros.perf.host import HostCallback
 from amalthea_uros.perf.network import Direction, Transmission, plain_topic
+from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.units import Time
 
 
@@ -82,8 +83,12 @@ class HostHops:
 
         Raises
         ------
-        UnknownError : the messages are not as stated.
+        UnknownError : the agents do not send one as the other, or the messages are not as stated.
         """
+        if sent not in relayed(received, self.solved.context.system):
+            raise UnknownError(
+                f"{name_of(sent)!r} is not sent on as {name_of(received)!r}: the chain leaves out what receives one and sends the other"
+            )
         if sent.wire == received.wire:
             return
         if difference := violated(received, self.host.releases):

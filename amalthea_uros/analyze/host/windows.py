@@ -38,11 +38,14 @@ class Windows:
 
     def improved(self, known: Response, route: Sequence[HostCallback]) -> Response:
         """The latency from when the timer of a route is due to the end of its last callback, if it is less than the known one."""
-        # If the timer is due at a poll, that window calls it.
+        # The paper has no `- 1`: a timer that is due at a poll is called in the window that begins there, so that it misses a poll by a
+        # picosecond at least.
         return self._less(known, (len(route) + 1) * self.length - 1)
 
     def improved_response(self, known: Response, route: Sequence[HostCallback]) -> Response:
         """The response time of the last callback of a route, from its message on, if it is less than the known one."""
+        # What publishes the message is executed in the present window before that, of which all others take the rest, also where it
+        # takes less time than it can: the paper counts the whole window.
         before = 1 if len(route) == 1 else route[-2].execution.most or 0
         return self._less(known, 2 * self.length - before)
 

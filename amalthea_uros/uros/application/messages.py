@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.perf.network import Direction
+from amalthea_uros.perf.network import Direction, request_topic, response_topic
 from amalthea_uros.spec.application import (
     ActionClient,
     ActionServer,
@@ -80,6 +80,15 @@ class Message:
     origin: Location | None
     attempts: int = 1
     timeout: Time | None = None
+
+    @property
+    def sent_as(self) -> str:
+        """The topic as which the agent publishes or takes it: a service has one for requests and one for responses."""
+        if self.kind in (MessageKind.REQUEST_OUT, MessageKind.REQUEST_IN):
+            return request_topic(self.topic)
+        if self.kind in (MessageKind.RESPONSE_OUT, MessageKind.RESPONSE_IN):
+            return response_topic(self.topic)
+        return self.topic
 
     @property
     def direction(self) -> Direction:

@@ -250,7 +250,7 @@ class Queueing:
             wire=self.line.name,
             direction=direction,
             purpose=purpose,
-            topic=message.message.topic if message is not None and purpose is Purpose.DATA and not is_asking else None,
+            topic=message.message.sent_as if message is not None and purpose is Purpose.DATA and not is_asking else None,
             callback=message.callback.name if message is not None else None,
             length=sum(parts),
             link=self.line.link,

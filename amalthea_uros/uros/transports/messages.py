@@ -92,7 +92,7 @@ def publications(callback: Callback, profile: Profile) -> Iterator[Publication]:
             timeout = profile.times_out_after(message.kind, message.content_bytes, reliable=message.reliable)
         transmission = each.name if describes_wire(profile.middleware.transport) else None
         yield Publication(
-            topic=message.topic,
+            topic=message.sent_as,
             transmission=transmission,
             reliable=message.reliable,
             acknowledgement=acknowledgement_name(transmission) if transmission and each.is_acknowledged else None,

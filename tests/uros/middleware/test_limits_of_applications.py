@@ -144,7 +144,7 @@ def test_publications_of_callbacks(author):
     (state,), (response,) = found["Report"], found["Ask"]
     assert (state.topic, state.transmission) == ("state", "state_topic_from_Report")
     assert (state.acknowledgement, state.waits, state.timeout) == ("state_topic_from_Report_acknowledgement", True, SECOND)
-    assert (response.topic, response.waits, response.timeout) == ("Ask", True, SECOND)
+    assert (response.topic, response.waits, response.timeout) == ("Ask/response", True, SECOND)
 
 
 def test_publications_that_nobody_waits_for(author):
