@@ -54,12 +54,12 @@ def calls(system, until):
     }
 
 
-def first_difference(simulated, played, tolerance=0):
+def first_difference(simulated, played):
     """Where two lists of times differ; the last call can be cut off by the end. None if they do not."""
     if abs(len(simulated) - len(played)) > 1:
         return len(simulated), len(played)
     pairs = zip(simulated, played, strict=False)
-    return next((pair for pair in pairs if abs(pair[0] - pair[1]) > tolerance), None)
+    return next((pair for pair in pairs if pair[0] != pair[1]), None)
 
 
 def fixed(seed):
@@ -115,7 +115,7 @@ def on_wires(seed):
     if plan["tick"] or plan["wire"] == "usb_cdc" or has_frames or wire.get("can_fd", {}).get("foreign"):
         return None
     if plan["wire"] == "serial":
-        # A bit takes a whole number of nanoseconds, in which the player counts.
+        # A bit takes a whole number of picoseconds, in which the player counts.
         plan["rate"] = wire["serial"]["baud_rate"] = 1_000_000
     return content, plan
 
@@ -133,8 +133,8 @@ def without_heartbeats(system):
 
 
 def as_planned(system, plan):
-    phases = {handle["name"]: handle["phase"] * 1000 for handle in plan["handles"]}
+    phases = {handle["name"]: handle["phase"] for handle in plan["handles"]}
     (executor,) = system.executors
     handles = tuple(replace(handle, phase=phases[handle.name]) for handle in executor.handles)
-    loop = replace(executor.loop, sleep=plan["sleep"] * 1000, sleep_early=0, pace=0)
+    loop = replace(executor.loop, sleep=plan["sleep"], sleep_early=0, pace=0)
     return replace(system, executors=(replace(executor, loop=loop, handles=handles),))

@@ -51,10 +51,8 @@ def _of_application(seed: int, tally: Tally) -> list[str]:
     loops.test_whole_way.prepared(content, plan)
     plan["blocks"] = system.network.wires[0].keeps_sender
     seen = Player(plan, loops.Least()).play(until)
-    for (_, handle), responses in loops.calls(loops.as_planned(system, plan), until * 1000).items():
-        played = [time * 1000 for time in seen.responses[handle]]
-        # The player counts in nanoseconds.
-        difference = loops.first_difference(responses, played, tolerance=30_000)
+    for (_, handle), responses in loops.calls(loops.as_planned(system, plan), until).items():
+        difference = loops.first_difference(responses, seen.responses[handle])
         if difference is not None:
             found.append(f"calls of an application: {handle}: {difference}")
         tally.calls["applications"] += len(responses)
