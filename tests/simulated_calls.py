@@ -65,7 +65,7 @@ def first_difference(simulated, played):
 def fixed(seed):
     """A random application without publications, in which all phases are known and no two things occur at the same instant.
 
-    Execution times are whole microseconds. Whatever else has a period, a phase or a sleep gets a random part of a microsecond, so that
+    No loop goes round without time. Execution times are whole microseconds. Whatever else has a period, a phase or a sleep gets a random part of a microsecond, so that
     two things that do not cause each other do not occur at the same picosecond: who is first then is not defined.
     """
     chance = random.Random(seed)
@@ -96,10 +96,12 @@ def _fixed(executor, apart, chance):
     loop, place = executor.loop, executor.place
     if loop.sleep:
         sleep = apart(loop.sleep)
-        loop = replace(loop, sleep=sleep, pace=loop.pace and loop.pace + sleep - loop.sleep)
+        early = min(loop.sleep_early, sleep // 2)
+        loop = replace(loop, sleep=sleep, sleep_early=early, pace=loop.pace and loop.pace + sleep - loop.sleep)
     loop = replace(loop, period=apart(loop.period))
     if place is not None:
-        place = replace(place, sleep=apart(place.sleep))
+        sleep = apart(place.sleep)
+        place = replace(place, sleep=sleep, sleep_early=min(place.sleep_early, sleep // 2))
     return replace(executor, handles=tuple(handles), loop=loop, place=place)
 
 
