@@ -149,7 +149,6 @@ class Played:
         self.seen, self.start = SeenLoop(), start
         self.prepares, self.looks = random.choice((0, 0, 2, 4)), random.choice((0, 0, 2, 4))
         self.is_shared = False
-        self.guards = Signal()
         self.members = [self]
 
     def steps(self, members):
@@ -255,13 +254,15 @@ class Played:
             timeout = 0
         end = kernel.now + timeout
         while not (session.unread and listens) and kernel.now < end:
-            yield Listen(session.signal if listens else self.guards, end)
+            yield Listen(session.signal, end)
+            while session.unread and not listens:
+                # For others; data does not end a wait for none (micro-ROS/rmw_microxrcedds#305).
+                session.store()
             if waiting.guard_conditions_end_wait and any(each.flag is not None for each in self.entities):
                 break
         most = waiting.messages_per_wait
-        for _ in range(len(session.unread) if most is None else min(most, len(session.unread))):
-            if listens:
-                session.store()
+        for _ in range(len(session.unread) if most is None or not listens else min(most, len(session.unread))):
+            session.store()
         if self.is_shared:
             yield from self._unlock()
 
@@ -366,8 +367,10 @@ def play(executors, spans, horizon, *, random=None, preempting=(), priorities=No
             kernel.start(one.steps(members), (priorities or {}).get(executor.name, 5 - number))
         for entity in one.entities:
             _release(entity, one, session, kernel, horizon, random, (delays or {}).get(entity.handle.name, 0))
-    for priority, period, offset, least, most in preempting:
-        kernel.start(_preempting(kernel, period, offset, least, most, spans.draw), priority)
+    for priority, period, offset, *cost in preempting:
+        for release in range(offset, horizon, period):
+            # Jobs are in the order of their activations, also among those of other tasks.
+            kernel.at(release, lambda priority=priority, cost=cost: kernel.start(iter((Run(spans.draw(*cost)),)), priority))
     kernel.play(horizon)
     for one in played:
         for entity in one.entities:
@@ -429,15 +432,6 @@ def _arrive(entity, played, session, kernel, time):
         entity.trigger(time)
         if played.model.waiting.guard_conditions_end_wait:
             kernel.wake(session.signal)
-            kernel.wake(played.guards)
     else:
         session.unread.append((entity, time))
         kernel.wake(session.signal)
-
-
-def _preempting(kernel, period, offset, least, most, draw):
-    release = offset
-    while True:
-        yield Until(release)
-        yield Run(draw(least, most))
-        release += period

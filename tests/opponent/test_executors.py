@@ -56,6 +56,15 @@ def test_every_call_is_that_of_a_player():
     assert tally.calls["applications"] > 50
 
 
+@pytest.mark.parametrize(
+    "seed",
+    [128, 257, 561, 1586],
+    ids=["turn-of-a-thread", "session-that-is-free", "queue-of-equals", "messages-for-others"],
+)
+def test_calls_that_once_differed(seed):
+    assert different_calls(seed, Tally()) == []
+
+
 @pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
 def test_what_was_once_said_falsely_of_a_description(path):
     assert false_claims(yaml.safe_load(path.read_text()), runs=runs_of(300 * MILLISECOND, [1])) == []

@@ -48,7 +48,7 @@ def read(m: Memory, core: int, process: int, executor: int) -> int:
                 return HAS_TO_WAIT + code
             m[executor + LISTENING] = NOT_LISTENING
             return HAS_READ
-        if not awaited and (m[executor + DATA_READ] or _is_woken(m, executor)):
+        if not awaited and (_has_data(m, executor) or _is_woken(m, executor)):
             m[executor + LISTENING] = NOT_LISTENING
             return IS_DONE
         if m[NOW] < m[executor + LISTENS_UNTIL]:
@@ -104,6 +104,11 @@ def _ask(m: Memory, core: int, process: int, executor: int) -> int:
         m[flow + ASKS_AT] = NEVER
     m[executor + LISTENING] = HAS_ASKED
     return result
+
+
+def _has_data(m: Memory, executor: int) -> bool:
+    """Whether what was read ends the wait; who waits for no messages reads them for others (micro-ROS/rmw_microxrcedds#305)."""
+    return m[executor + DATA_READ] != 0 and m[executor + MESSAGES_PER_WAIT] != NO_MESSAGE
 
 
 def _is_woken(m: Memory, executor: int) -> bool:

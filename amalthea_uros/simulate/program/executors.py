@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
-from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of
+from amalthea_uros.executors.semantics.readiness import is_message, messages, shares_session, thread_of
 from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
@@ -80,7 +80,7 @@ class ExecutorRecords:
             layout.OUT_FLOW: self.flows.out_of(executor.name),
             layout.WAIT_TIMEOUT: time(loop.timeout),
             layout.RESOLUTION: time(waiting.resolution),
-            layout.MESSAGES_PER_WAIT: waiting.messages_per_wait or 0,
+            layout.MESSAGES_PER_WAIT: (waiting.messages_per_wait or 0) if messages(executor) else layout.NO_MESSAGE,
             layout.KEPT_END_WAIT: int(waiting.stored_data_ends_wait),
             layout.FLAGS_END_WAIT: int(waiting.guard_conditions_end_wait),
             layout.WAIT_ALARM: self.messages.lines.alarm(layout.END_OF_WAIT, record),
