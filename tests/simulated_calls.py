@@ -65,8 +65,9 @@ def first_difference(simulated, played):
 def fixed(seed):
     """A random application without publications, in which all phases are known and no two things occur at the same instant.
 
-    No loop goes round without time. Execution times are whole microseconds. Whatever else has a period, a phase or a sleep gets a random part of a microsecond, so that
-    two things that do not cause each other do not occur at the same picosecond: who is first then is not defined.
+    No loop goes round without time. Execution times are whole microseconds. Whatever else has a period, a phase or a sleep gets a
+    random part of a microsecond, so that two things that do not cause each other do not occur at the same picosecond: who is first
+    then is not defined.
     """
     chance = random.Random(seed)
     app = application(chance)
