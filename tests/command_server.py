@@ -69,8 +69,9 @@ def started(words: Sequence[str], folder: Path, streams: Sequence[int]) -> socke
     return connection
 
 
+@cache
 def warm_up() -> None:
-    """Load what commands load."""
+    """Load what commands load, once in a process."""
     from amalthea_uros.cli.main import COMMANDS, cli
 
     for command in COMMANDS:

@@ -2,9 +2,11 @@ import gc
 import os
 import shutil
 import signal
-import sys
-from pathlib import Path
+from functools import partial
+from types import SimpleNamespace
 
+import compiled_code  # noqa: F401 - before what it keeps compiled
+import pytest
 from effort import IS_THOROUGH, PROFILE, THOROUGH, USUAL, sample
 from hypothesis import HealthCheck, Phase, settings
 
@@ -31,14 +33,6 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 for name in ("NO_COLOR", "FORCE_COLOR", "COLUMNS", "LINES"):
     os.environ.pop(name, None)
 
-# What Python and numba compile is kept in one folder, for the other workers, for the commands that tests start, and for the next run.
-# This holds also where Python shall not write beside the sources: without it, each command compiles the package again.
-COMPILED = Path(__file__).parents[1] / "build" / "compiled"
-os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-os.environ.setdefault("PYTHONPYCACHEPREFIX", str(COMPILED / "python"))
-os.environ.setdefault("NUMBA_CACHE_DIR", str(COMPILED / "numba"))
-sys.dont_write_bytecode, sys.pycache_prefix = False, os.environ["PYTHONPYCACHEPREFIX"]
-
 
 # Collecting tests makes many objects and no garbage. Later, garbage is collected as rarely as by the command. The objects are not
 # frozen: whoever reads a model counts frozen objects, which takes 40 ms for those of all tests.
@@ -50,6 +44,16 @@ def pytest_collection_finish():
     gc.enable()
 
 
+@pytest.fixture(autouse=True, scope="session")
+def young_garbage():
+    """A campaign ends with a collection of garbage, which takes a second for the objects of all tests; its own ones are young."""
+    from amalthea_uros.design.campaign import executors
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(executors, "gc", SimpleNamespace(collect=partial(gc.collect, 1)))
+        yield
+
+
 def pytest_collection_modifyitems(config, items):
     """Leave out what a usual run does not try; the first worker begins with what takes long."""
     if not IS_THOROUGH:
@@ -58,6 +62,11 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=[item for item in items if item not in known])
         items[:] = kept
     items.sort(key=lambda item: item.get_closest_marker("early") is None)
+
+
+def pytest_sessionfinish():
+    """Let pytest search no garbage, five times among all objects, in a process that ends."""
+    gc.freeze()
 
 
 def pytest_unconfigure(config):

@@ -5,6 +5,7 @@ A usual run has fewer examples of each property, and a sample of the published m
 
 import os
 from collections.abc import Hashable, Iterable, Iterator, Sequence
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any, TypeVar
@@ -15,15 +16,15 @@ from hypothesis import settings
 T = TypeVar("T")
 
 #: The examples of a property by default, and where time does not matter.
-USUAL, THOROUGH = 8, 1000
+USUAL, THOROUGH = 6, 1000
 
 PROFILE = os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if os.environ.get("CI") else "default")
 IS_THOROUGH = PROFILE == "thorough"
 
 
 def examples(count: int) -> settings:
-    """Another number of examples than usual for a property, of 16; a usual run tries a quarter of them, a thorough one many more."""
-    return settings(max_examples=count * THOROUGH // 16 if IS_THOROUGH else max(1, count // 4))
+    """Another number of examples than usual for a property, of 16; a usual run tries a sixth of them, a thorough one many more."""
+    return settings(max_examples=count * THOROUGH // 16 if IS_THOROUGH else max(1, count // 6))
 
 
 def every(step: int, cases: Sequence[T]) -> Sequence[T]:
@@ -32,7 +33,7 @@ def every(step: int, cases: Sequence[T]) -> Sequence[T]:
 
 
 #: Of so many published cases of a test, a usual run takes a part of about this number.
-SAMPLE = 30
+SAMPLE = 20
 
 
 def sample(items: Iterable[Any]) -> Iterator[Any]:
@@ -44,8 +45,13 @@ def sample(items: Iterable[Any]) -> Iterator[Any]:
 
 
 def _name(item: Any) -> Hashable:
-    # Relative, so that the sample is the same wherever the project is.
-    return str(item.path.relative_to(item.config.rootpath)), getattr(item, "originalname", item.name)
+    return _relative(item.path, item.config.rootpath), getattr(item, "originalname", item.name)
+
+
+@cache
+def _relative(path: Path, root: Path) -> str:
+    """The path of tests as a text, so that the sample is the same wherever the project is."""
+    return str(path.relative_to(root))
 
 
 def _is_published(item: Any) -> bool:

@@ -20,6 +20,7 @@ from amalthea_uros.validate import registry
 FOLDERS = (ROOT / "docs", ROOT / "benchmarks")
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(page for folder in FOLDERS for page in sorted(folder.rglob("*.md")))]
 BLOCK = re.compile(r"^```(?:(python|console)|\w+ title=\"([^\"]+)\")\n(.*?)^```", re.DOTALL | re.MULTILINE)
+WITH_EXAMPLES = [page for page in PAGES if re.search("^```(?:python|console)$", page.read_text(), re.MULTILINE)]
 
 
 @pytest.fixture
@@ -37,7 +38,7 @@ def samples(tmp_path, monkeypatch):
 
 
 @pytest.mark.early
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", WITH_EXAMPLES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_examples_of_a_page(page, samples):
     names: dict[str, object] = {}
     for language, file, text in BLOCK.findall(page.read_text()):

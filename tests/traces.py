@@ -9,7 +9,7 @@ import numpy as np
 
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.trace.readers import open_trace
-from amalthea_uros.trace.sinks import WriteOptions, open_sink
+from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.trace.vocabulary import OS_EVENTS
 
@@ -34,13 +34,36 @@ def said(tables: EventTable | Iterable[EventTable]) -> list[tuple]:
     return rows
 
 
-def encoded(suffix: str, *tables: EventTable, **options) -> bytes:
+def encoded(suffix: str, *tables: EventTable) -> bytes:
     """The file of some tables in the format of a suffix."""
     stream = io.BytesIO()
-    with open_sink(stream, tables[0].entities, WriteOptions(**options), suffix=suffix) as sink:
+    with open_sink(stream, tables[0].entities, suffix=suffix) as sink:
         for part in tables:
             sink.write(part)
     return stream.getvalue()
+
+
+def other_btf(text: str, *, is_numeric: bool = True, is_in_nanoseconds: bool = False) -> str:
+    """A BTF file as other tools write it: with numbers for types and entities, or in nanoseconds."""
+    names: dict[str, str] = {}
+    kinds = {kind.value: str(number) for number, kind in enumerate(EntityKind)} if is_numeric else {}
+    lines = []
+    for line in text.removesuffix("\n").split("\n"):
+        if is_in_nanoseconds and line == "#timescale ps":
+            lines.append("#timescale ns")
+        elif is_numeric and line.startswith("#entityTypeMapping "):
+            _, kind, name = line.split(" ", 2)
+            names[name] = str(len(names))
+            lines += [f"#typeMapping {kinds[kind]} {kind}", f"#entityMapping {names[name]} {name}"]
+            lines.append(f"#entityTypeMapping {kinds[kind]} {names[name]}")
+        elif line.startswith("#"):
+            lines.append(line)
+        else:
+            time, source, job, kind, target, *rest = line.split(",")
+            ends = (names.get(source, source), job, kinds.get(kind, kind), names.get(target, target))
+            rest[2:] = [names.get(note, note) for note in rest[2:]] if kind == EntityKind.OS_EVENT else rest[2:]
+            lines.append(",".join((str(int(time) // 1000) if is_in_nanoseconds else time, *ends, *rest)))
+    return "".join(f"{line}\n" for line in lines)
 
 
 def decoded(path: Path, content: str | bytes) -> tuple[list[tuple], tuple[Finding, ...]]:

@@ -28,24 +28,31 @@ BASE = ("_internal", "_version", "diagnostics", "errors", "names", "units")
 _ENTRANCES = ("__init__", "__main__")
 
 
-def module_imports() -> nx.DiGraph:
-    """The modules of the package, each with those that it imports."""
-    return _module_imports().copy()
+def module_imports(*, for_types: bool = False) -> nx.DiGraph:
+    """The modules of the package, each with those that it imports.
 
-
-@cache
-def _module_imports() -> nx.DiGraph:
-    files = {_module_name(path): path for path in (ROOT / PACKAGE).rglob("*.py")}
+    Parameters
+    ----------
+    for_types : include imports for type checking only
+    """
+    modules, imports = _imports()
     graph = nx.DiGraph()
-    graph.add_nodes_from(files)
-    for module, path in files.items():
-        graph.add_edges_from((module, target) for target in _imported(ast.parse(path.read_text()), files))
+    graph.add_nodes_from(modules)
+    graph.add_edges_from((module, target) for module, target, is_for_types in imports if for_types or not is_for_types)
     return graph
 
 
-def room_imports() -> nx.DiGraph:
+@cache
+def _imports() -> tuple[list[str], list[tuple[str, str, bool]]]:
+    """All modules, and each import: by which module, of which one, and whether for type checking only."""
+    files = {_module_name(path): path for path in (ROOT / PACKAGE).rglob("*.py")}
+    found = ((module, _imported(ast.parse(path.read_text()), files)) for module, path in files.items())
+    return list(files), [(module, target, is_for_types) for module, targets in found for target, is_for_types in targets]
+
+
+def room_imports(*, for_types: bool = False) -> nx.DiGraph:
     """The rooms, each with those that it imports."""
-    modules = module_imports()
+    modules = module_imports(for_types=for_types)
     graph = nx.DiGraph()
     graph.add_nodes_from(room_of(module) for module in modules)
     graph.add_edges_from((room_of(module), room_of(target)) for module, target in modules.edges)
@@ -77,19 +84,19 @@ def _module_name(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def _imported(tree: ast.AST, files: Mapping[str, Path]) -> Iterator[str]:
-    """The modules of the package that a module imports at any place, but for type checking."""
+def _imported(tree: ast.AST, files: Mapping[str, Path], *, for_types: bool = False) -> Iterator[tuple[str, bool]]:
+    """The modules of the package that a module imports at any place, and whether for type checking only."""
     for node in ast.iter_child_nodes(tree):
         match node:
             case ast.If(test=ast.Name(id="TYPE_CHECKING")):
-                continue
+                yield from _imported(node, files, for_types=True)
             case ast.Import(names=names):
-                yield from (name.name for name in names if name.name in files)
+                yield from ((name.name, for_types) for name in names if name.name in files)
             case ast.ImportFrom(module=str(module), names=names) if module in files:
                 found = (f"{module}.{name.name}" for name in names)
-                yield from (name if name in files else module for name in found)
+                yield from ((name if name in files else module, for_types) for name in found)
             case ast.stmt() | ast.ExceptHandler() | ast.match_case():  # an expression has no import
-                yield from _imported(node, files)
+                yield from _imported(node, files, for_types=for_types)
 
 
 def main(page: Path) -> None:

@@ -38,7 +38,8 @@ def run(command: list[str]) -> str:
             break
         output += chunk
     process.wait()
-    return output.decode().replace("\r\n", "\n")
+    # What is written after the start of a line again replaces it, such as the progress of a command on a slow computer.
+    return re.sub(r"[^\n]*\r", "", output.decode().replace("\r\n", "\n"))
 
 
 def spans(line: str) -> str:

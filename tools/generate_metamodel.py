@@ -84,15 +84,9 @@ def render() -> dict[str, str]:
     by_module: dict[str, list[UnionClass]] = {}
     for cls in merged.classes.values():
         by_module.setdefault(cls.module, []).append(cls)
-    described = descriptions()
-
-    def described_features(cls: UnionClass) -> list[str]:
-        return [name for name in cls.features if f"{cls.name}.{name}" in described]
-
     shared = {
         "merged": merged,
-        "described": described,
-        "described_features": described_features,
+        "described": descriptions(),
         "importing": importing,
         "versions": merged.versions,
         "all_versions": set(merged.versions),

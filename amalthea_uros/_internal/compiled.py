@@ -59,10 +59,6 @@ class Compiled(Generic[P, R]):
             else:
                 self._limit = self.effort.compiling if self._limit < self.effort.compiling else inf
 
-    def keep_python(self) -> None:
-        """Do not compile it, however much there is to do."""
-        self._limit = inf
-
     def compile(self) -> None:
         """Make it machine code from now on, if numba is there."""
         self._limit = inf

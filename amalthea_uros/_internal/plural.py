@@ -1,6 +1,8 @@
-"""Numbers of things, in the singular or plural."""
+"""Numbers of things, in the singular or plural, and lists of them."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 
 def counted(number: int, noun: str) -> str:
@@ -12,6 +14,15 @@ def counted(number: int, noun: str) -> str:
     ('2 classes', '0 entities')
     """
     return f"{number:,} {noun if number == 1 else _plural(noun)}"
+
+
+def enumerated(texts: Sequence[str]) -> str:
+    """Texts as a list in a sentence.
+
+    >>> enumerated("a"), enumerated("ab"), enumerated("abc")
+    ('a', 'a and b', 'a, b and c')
+    """
+    return " and ".join(filter(None, [", ".join(texts[:-1]), *texts[-1:]]))
 
 
 def _plural(noun: str) -> str:

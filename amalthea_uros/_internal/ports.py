@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from typing import Any
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.resources import PLATFORMS, yaml_data
@@ -37,6 +38,7 @@ class Port:
     pools_of : where these pools are so, after "is 1 ..."
     least_stack : of a task in which an executor spins, in bytes, as the port documents it; None if it does not
     kconfig : build options that its configuration replaces -> their names there
+    code : how code for it looks, see `uros.firmware.ports.CodePort`
     references : the sources of these facts
     """
 
@@ -47,6 +49,7 @@ class Port:
     pools_of: str = ""
     least_stack: int | None = None
     kconfig: Mapping[str, str] = field(default_factory=dict)
+    code: Mapping[str, Any] = field(default_factory=dict)
     references: Mapping[str, str] = field(default_factory=dict)
 
 

@@ -82,8 +82,3 @@ class TextDocument:
         column = min(column, len(text))
         found = _TOKEN.match(text, column)
         return types.Range(self.position(line, column), self.position(line, found.end() if found else column + 1))
-
-    def whole(self) -> types.Range:
-        """The range of the whole text."""
-        last = len(self.lines) - 1
-        return types.Range(types.Position(0, 0), self.position(last, len(self.lines[last])))

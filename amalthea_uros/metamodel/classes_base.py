@@ -25,24 +25,15 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes_sw import SWModel
 
 class IAnnotatable(Element, abstract=True):
-    """Object that may carry custom properties.
-
-    Attributes
-    ----------
-    custom_properties : User-defined values by key; a key may occur only once per object.
-    """
+    """Object that may carry custom properties."""
     custom_properties: list[CustomProperty] = containments("customProperties")
+    """User-defined values by key; a key may occur only once per object."""
 
 class BaseObject(IAnnotatable, abstract=True):
     """Base of the classes whose objects may carry custom properties."""
 
 class Amalthea(BaseObject):
-    """Root of a model; it holds at most one sub-model of each kind.
-
-    Attributes
-    ----------
-    measurement_model : Measured runtimes; this sub-model was dropped in 1.0.0.
-    """
+    """Root of a model; it holds at most one sub-model of each kind."""
     common_elements: CommonElements | None = containment("commonElements")
     sw_model: SWModel | None = containment("swModel")
     hw_model: HWModel | None = containment("hwModel")
@@ -55,15 +46,12 @@ class Amalthea(BaseObject):
     components_model: ComponentsModel | None = containment("componentsModel")
     config_model: ConfigModel | None = containment("configModel")
     measurement_model: MeasurementModel | None = containment("measurementModel")  # until 0.9.9
+    """Measured runtimes; this sub-model was dropped in 1.0.0."""
 
 class INamed(Element, abstract=True):
-    """Object with a name.
-
-    Attributes
-    ----------
-    name : Raw text of any characters; only references encode it (a blank becomes a plus sign).
-    """
+    """Object with a name."""
     name: str | None = attribute("name")
+    """Raw text of any characters; only references encode it (a blank becomes a plus sign)."""
 
 class IReferable(INamed, abstract=True):
     """Named object to which others refer by name and class, so that names must be unique within a class."""
@@ -79,23 +67,15 @@ class ITaggable(Element, abstract=True):
     tags: list[Tag] = references("tags")
 
 class IDisplayName(Element, abstract=True):
-    """Object with a second name for display.
-
-    Attributes
-    ----------
-    display_name : Name to show to users; references always use the name.
-    """
+    """Object with a second name for display."""
     display_name: str | None = attribute("displayName")
+    """Name to show to users; references always use the name."""
 
 class IDescription(Element, abstract=True):
     """Object with a free text that describes it."""
     description: str | None = attribute("description")
 
 class INamespaceMember(Element, abstract=True):
-    """Object whose name may be qualified by a namespace.
-
-    Attributes
-    ----------
-    namespace : Namespace of the name; it becomes part of every reference to the object.
-    """
+    """Object whose name may be qualified by a namespace."""
     namespace: Namespace | None = reference("namespace")
+    """Namespace of the name; it becomes part of every reference to the object."""

@@ -25,22 +25,14 @@ class CommonElements(BaseObject):
     memory_classifiers: list[MemoryClassifier] = containments("memoryClassifiers")
 
 class Tag(ReferableBaseObject, IDescription):
-    """Mark that can be attached to objects, for instance to select them as a group.
-
-    Attributes
-    ----------
-    tag_type : Free text that sorts tags into kinds.
-    """
+    """Mark that can be attached to objects, for instance to select them as a group."""
     tag_type: str | None = attribute("tagType")
+    """Free text that sorts tags into kinds."""
 
 class Namespace(ReferableObject):
-    """One segment of a qualified name; segments are nested.
-
-    Attributes
-    ----------
-    next_segments : Namespaces below this one, each a longer qualified name.
-    """
+    """One segment of a qualified name; segments are nested."""
     next_segments: list[Namespace] = containments("nextSegments")
+    """Namespaces below this one, each a longer qualified name."""
 
 class Classifier(ReferableBaseObject, IDescription, abstract=True):
     """Property of a core or a memory that property constraints ask for."""
@@ -52,17 +44,13 @@ class MemoryClassifier(Classifier):
     """Property of memories, attached to their definitions."""
 
 class TransmissionPolicy(Element):
-    """How data is transmitted in chunks and what the processing of the chunks costs.
-
-    Attributes
-    ----------
-    chunk_size : Size of one chunk, not larger than the transmitted element.
-    chunk_processing_ticks : Ticks per chunk; all elements of an access are added up before the number of chunks is rounded up.
-    transmit_ratio : Share of the data that is really transmitted, 0 to 1 (default 1); it does not scale the ticks.
-    """
+    """How data is transmitted in chunks and what the processing of the chunks costs."""
     chunk_size: DataSize | None = containment("chunkSize")
+    """Size of one chunk, not larger than the transmitted element."""
     chunk_processing_ticks: int | None = attribute("chunkProcessingTicks")
+    """Ticks per chunk; all elements of an access are added up before the number of chunks is rounded up."""
     transmit_ratio: float | None = attribute("transmitRatio")
+    """Share of the data that is really transmitted, 0 to 1 (default 1); it does not scale the ticks."""
 
 class Quantity(Element, abstract=True):
     """Number with a unit; a unit that is left out means undefined, never a standard unit."""
@@ -74,27 +62,19 @@ class Value(Element, abstract=True):
     """Base of everything that a custom property or a scheduling parameter can hold."""
 
 class Time(Quantity, Value, TimeComparable):
-    """Integer with a unit of time; negative values are legal unless the role of the time excludes them.
-
-    Attributes
-    ----------
-    value : Integer in the given unit, of any size.
-    unit : Unit from s to ps; left out, the time is undefined and not a number of nanoseconds.
-    """
+    """Integer with a unit of time; negative values are legal unless the role of the time excludes them."""
     value: int | None = attribute("value")
+    """Integer in the given unit, of any size."""
     unit: TimeUnit | None = attribute("unit")
+    """Unit from s to ps; left out, the time is undefined and not a number of nanoseconds."""
 
     def __init__(self, value: int | None = None, unit: TimeUnit | str | None = None) -> None:
         Element.__init__(self, value=number_of(value), unit=unit_of(TimeUnit, unit))
 
 class Frequency(Quantity):
-    """Number of cycles per time, with a unit.
-
-    Attributes
-    ----------
-    value : Zero or more, in the given unit; the clock of a processing unit must be greater than zero.
-    """
+    """Number of cycles per time, with a unit."""
     value: float | None = attribute("value")
+    """Zero or more, in the given unit; the clock of a processing unit must be greater than zero."""
     unit: FrequencyUnit | None = attribute("unit")
 
     def __init__(self, value: float | None = None, unit: FrequencyUnit | str | None = None) -> None:
@@ -109,15 +89,11 @@ class Voltage(Quantity):
         Element.__init__(self, value=number_of(value), unit=unit_of(VoltageUnit, unit))
 
 class DataSize(Quantity):
-    """Amount of data in bits or bytes, with decimal (kB) or binary (KiB) prefix.
-
-    Attributes
-    ----------
-    value : Integer in the given unit; sizes of labels and processes must be greater than zero.
-    unit : Unit with prefix; sizes are often given in bit, so check before you take them for bytes.
-    """
+    """Amount of data in bits or bytes, with decimal (kB) or binary (KiB) prefix."""
     value: int | None = attribute("value")
+    """Integer in the given unit; sizes of labels and processes must be greater than zero."""
     unit: DataSizeUnit | None = attribute("unit")
+    """Unit with prefix; sizes are often given in bit, so check before you take them for bytes."""
 
     def __init__(self, value: int | None = None, unit: DataSizeUnit | str | None = None) -> None:
         Element.__init__(self, value=number_of(value), unit=unit_of(DataSizeUnit, unit))
@@ -182,14 +158,10 @@ class NumericStatistic(Element, abstract=True):
     """How often something happens, as one number or as minimum, average and maximum."""
 
 class MinAvgMaxStatistic(NumericStatistic):
-    """Statistic of a minimum, an average and a maximum.
-
-    Attributes
-    ----------
-    avg : Average, which must lie between min and max.
-    """
+    """Statistic of a minimum, an average and a maximum."""
     min: int | None = attribute("min")
     avg: float | None = attribute("avg")
+    """Average, which must lie between min and max."""
     max: int | None = attribute("max")
 
 class SingleValueStatistic(NumericStatistic):
@@ -200,313 +172,205 @@ class ITimeDeviation(Element, abstract=True):
     """Time that varies, described as a constant, by bounds, by a histogram or by a distribution."""
 
 class TimeInterval(Element, abstract=True):
-    """Base of deviations and entries with a lower and an upper bound.
-
-    Attributes
-    ----------
-    lower_bound : Smallest value, not above the upper bound.
-    upper_bound : Largest value, the one that worst-case analyses use.
-    """
+    """Base of deviations and entries with a lower and an upper bound."""
     lower_bound: Time | None = containment("lowerBound")
+    """Smallest value, not above the upper bound."""
     upper_bound: Time | None = containment("upperBound")
+    """Largest value, the one that worst-case analyses use."""
 
 class TimeConstant(ITimeDeviation):
     """Time that does not vary."""
     value: Time | None = containment("value")
 
 class TimeHistogram(ITimeDeviation):
-    """Time described by intervals and how often each was seen.
-
-    Attributes
-    ----------
-    entries : Intervals of any width, which may overlap or leave gaps.
-    """
+    """Time described by intervals and how often each was seen."""
     entries: list[TimeHistogramEntry] = containments("entries")
+    """Intervals of any width, which may overlap or leave gaps."""
 
 class TimeHistogramEntry(TimeInterval):
-    """Interval of a histogram and the number of values in it.
-
-    Attributes
-    ----------
-    occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
-    """
+    """Interval of a histogram and the number of values in it."""
     occurrences: int | None = attribute("occurrences")
+    """Weight of the interval, at least 1; how values spread inside the interval is undefined."""
 
 class BoundedTimeDistribution(TimeInterval, ITimeDeviation, abstract=True):
     """Base of time distributions that always have both bounds."""
 
 class TruncatedTimeDistribution(ITimeDeviation, abstract=True):
-    """Base of time distributions that bounds may cut off.
-
-    Attributes
-    ----------
-    lower_bound : Smallest value; unset means unbounded, which leaves no best case to analyse.
-    upper_bound : Largest value; unset means unbounded, which leaves no worst case to analyse.
-    """
+    """Base of time distributions that bounds may cut off."""
     lower_bound: Time | None = containment("lowerBound")
+    """Smallest value; unset means unbounded, which leaves no best case to analyse."""
     upper_bound: Time | None = containment("upperBound")
+    """Largest value; unset means unbounded, which leaves no worst case to analyse."""
 
 class TimeBoundaries(BoundedTimeDistribution):
-    """Time between two bounds, with a hint where between them the values lie.
-
-    Attributes
-    ----------
-    sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
-    """
+    """Time between two bounds, with a hint where between them the values lie."""
     sampling_type: SamplingType | None = attribute("samplingType")
+    """Where values concentrate; the average is the centre of the bounds whatever is chosen here."""
 
 class TimeStatistics(BoundedTimeDistribution):
-    """Time known by its minimum, average and maximum, without a distribution.
-
-    Attributes
-    ----------
-    average : Average, not necessarily the centre of the bounds.
-    """
+    """Time known by its minimum, average and maximum, without a distribution."""
     average: Time | None = containment("average")
+    """Average, not necessarily the centre of the bounds."""
 
 class TimeUniformDistribution(BoundedTimeDistribution):
     """Time whose values between the bounds are equally likely."""
 
 class TimeGaussDistribution(TruncatedTimeDistribution):
-    """Normally distributed time, optionally truncated at bounds.
-
-    Attributes
-    ----------
-    mean : Mean of the normal distribution before it is truncated, thus not always the average.
-    sd : Standard deviation of the normal distribution before it is truncated.
-    """
+    """Normally distributed time, optionally truncated at bounds."""
     mean: Time | None = containment("mean")
+    """Mean of the normal distribution before it is truncated, thus not always the average."""
     sd: Time | None = containment("sd")
+    """Standard deviation of the normal distribution before it is truncated."""
 
 class TimeWeibullEstimatorsDistribution(BoundedTimeDistribution):
-    """Weibull distributed time given by its average and the probability of the upper bound.
-
-    Attributes
-    ----------
-    average : Average, strictly between the bounds.
-    p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
-    """
+    """Weibull distributed time given by its average and the probability of the upper bound."""
     average: Time | None = containment("average")
+    """Average, strictly between the bounds."""
     p_remain_promille: float | None = attribute("pRemainPromille")
+    """Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound."""
 
 class TimeBetaDistribution(BoundedTimeDistribution):
-    """Beta distributed time, scaled to the bounds.
-
-    Attributes
-    ----------
-    alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
-    beta : Second shape parameter, greater than zero.
-    """
+    """Beta distributed time, scaled to the bounds."""
     alpha: float | None = attribute("alpha")
+    """First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta)."""
     beta: float | None = attribute("beta")
+    """Second shape parameter, greater than zero."""
 
 class IDiscreteValueDeviation(Element, abstract=True):
     """Integer that varies, such as ticks, cycles or a count."""
 
 class DiscreteValueInterval(Element, abstract=True):
-    """Base of deviations and entries with an integer lower and upper bound.
-
-    Attributes
-    ----------
-    lower_bound : Smallest value, not above the upper bound; for ticks it gives the BCET.
-    upper_bound : Largest value; for ticks it gives the WCET.
-    """
+    """Base of deviations and entries with an integer lower and upper bound."""
     lower_bound: int | None = attribute("lowerBound")
+    """Smallest value, not above the upper bound; for ticks it gives the BCET."""
     upper_bound: int | None = attribute("upperBound")
+    """Largest value; for ticks it gives the WCET."""
 
 class DiscreteValueConstant(IDiscreteValueDeviation):
     """Integer that does not vary."""
     value: int | None = attribute("value")
 
 class DiscreteValueHistogram(IDiscreteValueDeviation):
-    """Integer described by intervals and how often each was seen.
-
-    Attributes
-    ----------
-    entries : Intervals of any width, which may overlap or leave gaps.
-    """
+    """Integer described by intervals and how often each was seen."""
     entries: list[DiscreteValueHistogramEntry] = containments("entries")
+    """Intervals of any width, which may overlap or leave gaps."""
 
 class DiscreteValueHistogramEntry(DiscreteValueInterval):
-    """Interval of a histogram and the number of values in it.
-
-    Attributes
-    ----------
-    occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
-    """
+    """Interval of a histogram and the number of values in it."""
     occurrences: int | None = attribute("occurrences")
+    """Weight of the interval, at least 1; how values spread inside the interval is undefined."""
 
 class BoundedDiscreteValueDistribution(DiscreteValueInterval, IDiscreteValueDeviation, abstract=True):
     """Base of integer distributions that always have both bounds."""
 
 class TruncatedDiscreteValueDistribution(IDiscreteValueDeviation, abstract=True):
-    """Base of integer distributions that bounds may cut off.
-
-    Attributes
-    ----------
-    lower_bound : Smallest value; unset means unbounded, which leaves no BCET to analyse.
-    upper_bound : Largest value; unset means unbounded, which leaves no WCET to analyse.
-    """
+    """Base of integer distributions that bounds may cut off."""
     lower_bound: int | None = attribute("lowerBound")
+    """Smallest value; unset means unbounded, which leaves no BCET to analyse."""
     upper_bound: int | None = attribute("upperBound")
+    """Largest value; unset means unbounded, which leaves no WCET to analyse."""
 
 class DiscreteValueBoundaries(BoundedDiscreteValueDistribution):
-    """Integer between two bounds, with a hint where between them the values lie.
-
-    Attributes
-    ----------
-    sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
-    """
+    """Integer between two bounds, with a hint where between them the values lie."""
     sampling_type: SamplingType | None = attribute("samplingType")
+    """Where values concentrate; the average is the centre of the bounds whatever is chosen here."""
 
 class DiscreteValueStatistics(BoundedDiscreteValueDistribution):
-    """Integer known by its minimum, average and maximum, without a distribution.
-
-    Attributes
-    ----------
-    average : Average, not necessarily the centre of the bounds nor an integer.
-    """
+    """Integer known by its minimum, average and maximum, without a distribution."""
     average: float | None = attribute("average")
+    """Average, not necessarily the centre of the bounds nor an integer."""
 
 class DiscreteValueUniformDistribution(BoundedDiscreteValueDistribution):
     """Integer whose values between the bounds are equally likely."""
 
 class DiscreteValueGaussDistribution(TruncatedDiscreteValueDistribution):
-    """Normally distributed integer, optionally truncated at bounds.
-
-    Attributes
-    ----------
-    mean : Mean of the normal distribution before it is truncated, thus not always the average.
-    sd : Standard deviation of the normal distribution before it is truncated, greater than zero.
-    """
+    """Normally distributed integer, optionally truncated at bounds."""
     mean: float | None = attribute("mean")
+    """Mean of the normal distribution before it is truncated, thus not always the average."""
     sd: float | None = attribute("sd")
+    """Standard deviation of the normal distribution before it is truncated, greater than zero."""
 
 class DiscreteValueWeibullEstimatorsDistribution(BoundedDiscreteValueDistribution):
-    """Weibull distributed integer given by its average and the probability of the upper bound.
-
-    Attributes
-    ----------
-    average : Average, strictly between the bounds.
-    p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
-    """
+    """Weibull distributed integer given by its average and the probability of the upper bound."""
     average: float | None = attribute("average")
+    """Average, strictly between the bounds."""
     p_remain_promille: float | None = attribute("pRemainPromille")
+    """Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound."""
 
 class DiscreteValueBetaDistribution(BoundedDiscreteValueDistribution):
-    """Beta distributed integer, scaled to the bounds.
-
-    Attributes
-    ----------
-    alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
-    beta : Second shape parameter, greater than zero.
-    """
+    """Beta distributed integer, scaled to the bounds."""
     alpha: float | None = attribute("alpha")
+    """First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta)."""
     beta: float | None = attribute("beta")
+    """Second shape parameter, greater than zero."""
 
 class IContinuousValueDeviation(Element, abstract=True):
     """Real number that varies, such as a rate."""
 
 class ContinuousValueInterval(Element, abstract=True):
-    """Base of deviations and entries with a real lower and upper bound.
-
-    Attributes
-    ----------
-    lower_bound : Smallest value, not above the upper bound.
-    upper_bound : Largest value, not below the lower bound.
-    """
+    """Base of deviations and entries with a real lower and upper bound."""
     lower_bound: float | None = attribute("lowerBound")
+    """Smallest value, not above the upper bound."""
     upper_bound: float | None = attribute("upperBound")
+    """Largest value, not below the lower bound."""
 
 class ContinuousValueConstant(IContinuousValueDeviation):
     """Real number that does not vary."""
     value: float | None = attribute("value")
 
 class ContinuousValueHistogram(IContinuousValueDeviation):
-    """Real number described by intervals and how often each was seen.
-
-    Attributes
-    ----------
-    entries : Intervals of any width, which may overlap or leave gaps.
-    """
+    """Real number described by intervals and how often each was seen."""
     entries: list[ContinuousValueHistogramEntry] = containments("entries")
+    """Intervals of any width, which may overlap or leave gaps."""
 
 class ContinuousValueHistogramEntry(ContinuousValueInterval):
-    """Interval of a histogram and the number of values in it.
-
-    Attributes
-    ----------
-    occurrences : Weight of the interval, at least 1; how values spread inside the interval is undefined.
-    """
+    """Interval of a histogram and the number of values in it."""
     occurrences: int | None = attribute("occurrences")
+    """Weight of the interval, at least 1; how values spread inside the interval is undefined."""
 
 class BoundedContinuousValueDistribution(ContinuousValueInterval, IContinuousValueDeviation, abstract=True):
     """Base of distributions of real numbers that always have both bounds."""
 
 class TruncatedContinuousValueDistribution(IContinuousValueDeviation, abstract=True):
-    """Base of distributions of real numbers that bounds may cut off.
-
-    Attributes
-    ----------
-    lower_bound : Smallest value; unset means unbounded.
-    upper_bound : Largest value; unset means unbounded.
-    """
+    """Base of distributions of real numbers that bounds may cut off."""
     lower_bound: float | None = attribute("lowerBound")
+    """Smallest value; unset means unbounded."""
     upper_bound: float | None = attribute("upperBound")
+    """Largest value; unset means unbounded."""
 
 class ContinuousValueBoundaries(BoundedContinuousValueDistribution):
-    """Real number between two bounds, with a hint where between them the values lie.
-
-    Attributes
-    ----------
-    sampling_type : Where values concentrate; the average is the centre of the bounds whatever is chosen here.
-    """
+    """Real number between two bounds, with a hint where between them the values lie."""
     sampling_type: SamplingType | None = attribute("samplingType")
+    """Where values concentrate; the average is the centre of the bounds whatever is chosen here."""
 
 class ContinuousValueStatistics(BoundedContinuousValueDistribution):
-    """Real number known by its minimum, average and maximum, without a distribution.
-
-    Attributes
-    ----------
-    average : Average, not necessarily the centre of the bounds.
-    """
+    """Real number known by its minimum, average and maximum, without a distribution."""
     average: float | None = attribute("average")
+    """Average, not necessarily the centre of the bounds."""
 
 class ContinuousValueUniformDistribution(BoundedContinuousValueDistribution):
     """Real number whose values between the bounds are equally likely."""
 
 class ContinuousValueGaussDistribution(TruncatedContinuousValueDistribution):
-    """Normally distributed real number, optionally truncated at bounds.
-
-    Attributes
-    ----------
-    mean : Mean of the normal distribution before it is truncated, thus not always the average.
-    sd : Standard deviation of the normal distribution before it is truncated, greater than zero.
-    """
+    """Normally distributed real number, optionally truncated at bounds."""
     mean: float | None = attribute("mean")
+    """Mean of the normal distribution before it is truncated, thus not always the average."""
     sd: float | None = attribute("sd")
+    """Standard deviation of the normal distribution before it is truncated, greater than zero."""
 
 class ContinuousValueWeibullEstimatorsDistribution(BoundedContinuousValueDistribution):
-    """Weibull distributed real number given by its average and the probability of the upper bound.
-
-    Attributes
-    ----------
-    average : Average, strictly between the bounds.
-    p_remain_promille : Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound.
-    """
+    """Weibull distributed real number given by its average and the probability of the upper bound."""
     average: float | None = attribute("average")
+    """Average, strictly between the bounds."""
     p_remain_promille: float | None = attribute("pRemainPromille")
+    """Probability, in per mille (default 1.0, that is 0.1 percent), that a value exceeds the upper bound."""
 
 class ContinuousValueBetaDistribution(BoundedContinuousValueDistribution):
-    """Beta distributed real number, scaled to the bounds.
-
-    Attributes
-    ----------
-    alpha : First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta).
-    beta : Second shape parameter, greater than zero.
-    """
+    """Beta distributed real number, scaled to the bounds."""
     alpha: float | None = attribute("alpha")
+    """First shape parameter, greater than zero; the average is lower + (upper - lower) * alpha / (alpha + beta)."""
     beta: float | None = attribute("beta")
+    """Second shape parameter, greater than zero."""
 
 class Mode(ReferableBaseObject, abstract=True):
     """Type of a mode label, which says what values it may take."""
@@ -515,13 +379,9 @@ class NumericMode(Mode):
     """Mode whose values are integers."""
 
 class EnumMode(Mode):
-    """Mode whose values are its literals.
-
-    Attributes
-    ----------
-    literals : Values in order; increment and decrement step along this order and stop at its ends.
-    """
+    """Mode whose values are its literals."""
     literals: list[ModeLiteral] = containments("literals")
+    """Values in order; increment and decrement step along this order and stop at its ends."""
 
 class ModeLiteral(ReferableBaseObject):
     """One value of an enum mode."""

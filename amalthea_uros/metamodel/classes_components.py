@@ -30,40 +30,28 @@ class ComponentsModel(BaseObject, IComponentContainer, IInterfaceContainer):
     systems: list[System] = containments("systems")
 
 class ISystem(Element, abstract=True):
-    """Object built of connected component instances, such as a system or a composite.
-
-    Attributes
-    ----------
-    grounded_ports : Ports of inner instances that stay unconnected on purpose.
-    """
+    """Object built of connected component instances, such as a system or a composite."""
     component_instances: list[ComponentInstance] = containments("componentInstances")
     connectors: list[Connector] = containments("connectors")
     grounded_ports: list[QualifiedPort] = containments("groundedPorts")
+    """Ports of inner instances that stay unconnected on purpose."""
 
 class ComponentInterface(ReferableBaseObject, ITaggable, abstract=True):
-    """Interface that ports provide or require, possibly divided into sub-interfaces.
-
-    Attributes
-    ----------
-    data_type : Type of the data; spelled datatype until 2.2.0.
-    datatype : Type of the data; spelled dataType from 3.0.0 on.
-    """
+    """Interface that ports provide or require, possibly divided into sub-interfaces."""
     data_type: TypeDefinition | None = reference("dataType")  # since 3.0.0
+    """Type of the data; spelled datatype until 2.2.0."""
     sub_interfaces: list[SubInterface] = containments("subInterfaces")
     datatype: TypeDefinition | None = reference("datatype")  # until 2.2.0
+    """Type of the data; spelled dataType from 3.0.0 on."""
 
 class IComponentStructureMember(Element, abstract=True):
     """Object that can be sorted into the tree of component structures."""
     structure: ComponentStructure | None = reference("structure")
 
 class MainInterface(ComponentInterface, INamespaceMember, IComponentStructureMember):
-    """Interface that stands by itself and not inside another one.
-
-    Attributes
-    ----------
-    version : Version as free text, 1.0 by default.
-    """
+    """Interface that stands by itself and not inside another one."""
     version: str | None = attribute("version")
+    """Version as free text, 1.0 by default."""
 
 class SubInterface(ComponentInterface):
     """Part of an interface."""
@@ -74,26 +62,18 @@ class ComponentPort(ReferableBaseObject, ITaggable):
     interface: ComponentInterface | None = reference("interface")
 
 class ComponentStructure(ReferableObject):
-    """Node of a tree that sorts components and interfaces.
-
-    Attributes
-    ----------
-    structure_type : Free text that names the kind of the node.
-    """
+    """Node of a tree that sorts components and interfaces."""
     structure_type: str | None = attribute("structureType")
+    """Free text that names the kind of the node."""
     sub_structures: list[ComponentStructure] = containments("subStructures")
 
 class Component(ReferableBaseObject, ITaggable, INamespaceMember, IComponentStructureMember):
-    """Unit of software behind ports; it lists its processes, runnables and data and does not contain them.
-
-    Attributes
-    ----------
-    processes : Processes, or prototypes of them, that belong to the component.
-    runnables : Runnables of the component; its start and end events are derived from them.
-    """
+    """Unit of software behind ports; it lists its processes, runnables and data and does not contain them."""
     ports: list[ComponentPort] = containments("ports")
     processes: list[AbstractProcess] = references("processes")
+    """Processes, or prototypes of them, that belong to the component."""
     runnables: list[Runnable] = references("runnables")
+    """Runnables of the component; its start and end events are derived from them."""
     labels: list[Label] = references("labels")
     semaphores: list[Semaphore] = references("semaphores")
     os_events: list[OsEvent] = references("osEvents")
@@ -105,24 +85,16 @@ class System(ReferableBaseObject, ITaggable, ISystem):
     """Top of an architecture, built of connected component instances."""
 
 class ComponentInstance(ReferableBaseObject, ITaggable):
-    """Use of a component inside a system or composite.
-
-    Attributes
-    ----------
-    type : Component that is used.
-    """
+    """Use of a component inside a system or composite."""
     type: Component | None = reference("type")
+    """Component that is used."""
 
 class Connector(BaseObject, INamed, ITaggable):
-    """Link between two ports inside a system or composite.
-
-    Attributes
-    ----------
-    implemented_interfaces : Channel that carries the data, by interface of the connected ports.
-    """
+    """Link between two ports inside a system or composite."""
     source_port: QualifiedPort | None = containment("sourcePort")
     target_port: QualifiedPort | None = containment("targetPort")
     implemented_interfaces: list[InterfaceChannel] = containments("implementedInterfaces")
+    """Channel that carries the data, by interface of the connected ports."""
 
 class InterfaceChannel(Element):
     """Map entry from an interface to the channel that implements it."""
@@ -130,11 +102,7 @@ class InterfaceChannel(Element):
     value: Channel | None = reference("value")
 
 class QualifiedPort(BaseObject):
-    """Port of a certain component instance.
-
-    Attributes
-    ----------
-    instance : Instance that the port is taken of, because a port itself belongs to a component.
-    """
+    """Port of a certain component instance."""
     instance: ComponentInstance | None = reference("instance")
+    """Instance that the port is taken of, because a port itself belongs to a component."""
     port: ComponentPort | None = reference("port")

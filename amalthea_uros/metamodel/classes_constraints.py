@@ -36,17 +36,13 @@ class ConstraintsModel(BaseObject):
     physical_section_constraints: list[PhysicalSectionConstraint] = containments("physicalSectionConstraints")
 
 class RunnableSequencingConstraint(ReferableBaseObject):
-    """Demand that groups of runnables run in a given order.
-
-    Attributes
-    ----------
-    order_type : Whether other runnables may run in between, and where in the process the sequence lies.
-    runnable_groups : Two groups or more; all of a group terminate before one of the next starts, in any order within a group.
-    process_scope : Processes in which the order is checked; runnables that run elsewhere do not count.
-    """
+    """Demand that groups of runnables run in a given order."""
     order_type: RunnableOrderType | None = attribute("orderType")
+    """Whether other runnables may run in between, and where in the process the sequence lies."""
     runnable_groups: list[RunnableEntityGroup] = containments("runnableGroups")
+    """Two groups or more; all of a group terminate before one of the next starts, in any order within a group."""
     process_scope: list[AbstractProcess] = references("processScope")
+    """Processes in which the order is checked; runnables that run elsewhere do not count."""
 
 class AffinityConstraint(ReferableBaseObject, abstract=True):
     """Demand that objects are kept together on a target or apart."""
@@ -58,58 +54,34 @@ class PairingConstraint(AffinityConstraint, abstract=True):
     """Demand that objects are kept together."""
 
 class ProcessConstraint(Element, abstract=True):
-    """Affinity constraint about processes.
-
-    Attributes
-    ----------
-    target : Processing units or schedulers that count; unset or empty means all.
-    """
+    """Affinity constraint about processes."""
     target: ProcessConstraintTarget | None = containment("target")
+    """Processing units or schedulers that count; unset or empty means all."""
 
 class RunnableConstraint(Element, abstract=True):
-    """Affinity constraint about runnables.
-
-    Attributes
-    ----------
-    target : Processing units or schedulers that count; unset or empty means all.
-    """
+    """Affinity constraint about runnables."""
     target: RunnableConstraintTarget | None = containment("target")
+    """Processing units or schedulers that count; unset or empty means all."""
 
 class DataConstraint(Element, abstract=True):
-    """Affinity constraint about labels.
-
-    Attributes
-    ----------
-    target : Memories that count; unset or empty means all.
-    """
+    """Affinity constraint about labels."""
     target: DataConstraintTarget | None = containment("target")
+    """Memories that count; unset or empty means all."""
 
 class RunnableSeparationConstraint(SeparationConstraint, RunnableConstraint, BaseObject):
-    """Demand that runnables of two groups share no target, or that those of one group avoid the targets.
-
-    Attributes
-    ----------
-    groups : Two groups are kept apart from each other, a single one is kept away from the targets.
-    """
+    """Demand that runnables of two groups share no target, or that those of one group avoid the targets."""
     groups: list[RunnableGroup] = containments("groups")
+    """Two groups are kept apart from each other, a single one is kept away from the targets."""
 
 class ProcessSeparationConstraint(SeparationConstraint, ProcessConstraint, BaseObject):
-    """Demand that processes of two groups share no target, or that those of one group avoid the targets.
-
-    Attributes
-    ----------
-    groups : Two groups are kept apart from each other, a single one is kept away from the targets.
-    """
+    """Demand that processes of two groups share no target, or that those of one group avoid the targets."""
     groups: list[ProcessGroup] = containments("groups")
+    """Two groups are kept apart from each other, a single one is kept away from the targets."""
 
 class DataSeparationConstraint(SeparationConstraint, DataConstraint, BaseObject):
-    """Demand that labels of two groups share no memory, or that those of one group avoid the targets.
-
-    Attributes
-    ----------
-    groups : Two groups are kept apart from each other, a single one is kept away from the targets.
-    """
+    """Demand that labels of two groups share no memory, or that those of one group avoid the targets."""
     groups: list[LabelEntityGroup] = containments("groups")
+    """Two groups are kept apart from each other, a single one is kept away from the targets."""
 
 class RunnablePairingConstraint(PairingConstraint, RunnableConstraint, BaseObject):
     """Demand that all runnables of a group run on one of the targets together."""
@@ -133,31 +105,19 @@ class DataConstraintTarget(Element, abstract=True):
     """Where labels may or may not lie."""
 
 class TargetMemory(DataConstraintTarget, BaseObject):
-    """Memories as the target of an affinity constraint.
-
-    Attributes
-    ----------
-    memories : Memories that count; an empty list means all.
-    """
+    """Memories as the target of an affinity constraint."""
     memories: list[Memory] = references("memories")
+    """Memories that count; an empty list means all."""
 
 class TargetCore(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
-    """Processing units as the target of an affinity constraint.
-
-    Attributes
-    ----------
-    cores : Processing units that count; an empty list means all.
-    """
+    """Processing units as the target of an affinity constraint."""
     cores: list[ProcessingUnit] = references("cores")
+    """Processing units that count; an empty list means all."""
 
 class TargetScheduler(RunnableConstraintTarget, ProcessConstraintTarget, BaseObject):
-    """Schedulers as the target of an affinity constraint.
-
-    Attributes
-    ----------
-    schedulers : Schedulers that count; an empty list means all.
-    """
+    """Schedulers as the target of an affinity constraint."""
     schedulers: list[Scheduler] = references("schedulers")
+    """Schedulers that count; an empty list means all."""
 
 class LabelGroup(Element, abstract=True):
     """Labels about which a constraint speaks."""
@@ -185,21 +145,17 @@ class TagGroup(RunnableGroup, ProcessGroup, BaseObject):
     tag: Tag | None = reference("tag")
 
 class AbstractEventChain(BaseObject, INamed, abstract=True):
-    """Cause-effect chain from a stimulus event to a response event, possibly refined by items.
-
-    Attributes
-    ----------
-    stimulus : Event with which the chain starts.
-    response : Event with which the chain ends.
-    items : Parts of the chain; without items it is a single step from stimulus to response.
-    item_type : Whether the items follow each other or run side by side; undefined is commonly read as sequence.
-    min_items_completed : For parallel items, how many must complete; 1 (default) makes them alternatives, their number a join.
-    """
+    """Cause-effect chain from a stimulus event to a response event, possibly refined by items."""
     stimulus: Event | None = reference("stimulus")
+    """Event with which the chain starts."""
     response: Event | None = reference("response")
+    """Event with which the chain ends."""
     items: list[EventChainItem] = containments("items")
+    """Parts of the chain; without items it is a single step from stimulus to response."""
     item_type: EventChainItemType | None = attribute("itemType")
+    """Whether the items follow each other or run side by side; undefined is commonly read as sequence."""
     min_items_completed: int | None = attribute("minItemsCompleted")
+    """For parallel items, how many must complete; 1 (default) makes them alternatives, their number a join."""
 
 class EventChain(AbstractEventChain, IReferable):
     """Event chain that constraints and other chains can refer to."""
@@ -211,13 +167,9 @@ class EventChainItem(Element, abstract=True):
     """Part of an event chain."""
 
 class EventChainReference(BaseObject, EventChainItem):
-    """Part of an event chain that is an event chain defined elsewhere.
-
-    Attributes
-    ----------
-    event_chain : Chain that is used as a part; references must not run in a circle.
-    """
+    """Part of an event chain that is an event chain defined elsewhere."""
     event_chain: EventChain | None = reference("eventChain")
+    """Chain that is used as a part; references must not run in a circle."""
 
 class EventChainContainer(BaseObject, EventChainItem):
     """Part of an event chain that is defined on the spot."""
@@ -232,86 +184,62 @@ class PhysicalSectionConstraint(ReferableBaseObject):
     memories: list[Memory] = references("memories")
 
 class SynchronizationConstraint(TimingConstraint, abstract=True):
-    """Demand that events occur together, within a tolerance.
-
-    Attributes
-    ----------
-    multiple_occurrences_allowed : Whether every occurrence counts (true) or only the next one of each event (false, default).
-    tolerance : Width of the time window in which all of them must occur.
-    """
+    """Demand that events occur together, within a tolerance."""
     multiple_occurrences_allowed: bool | None = attribute("multipleOccurrencesAllowed")
+    """Whether every occurrence counts (true) or only the next one of each event (false, default)."""
     tolerance: Time | None = containment("tolerance")
+    """Width of the time window in which all of them must occur."""
 
 class EventSynchronizationConstraint(SynchronizationConstraint):
     """Demand that occurrences of several events lie in a common time window."""
     events: list[EntityEvent] = references("events")
 
 class EventChainSynchronizationConstraint(SynchronizationConstraint):
-    """Demand that two event chains start together or end together.
-
-    Attributes
-    ----------
-    scope : Exactly two chains.
-    type : Whether the stimuli or the responses of the chains are compared.
-    """
+    """Demand that two event chains start together or end together."""
     scope: list[EventChain] = references("scope")
+    """Exactly two chains."""
     type: SynchronizationType | None = attribute("type")
+    """Whether the stimuli or the responses of the chains are compared."""
 
 class DelayConstraint(TimingConstraint):
-    """Demand on the time from a source event to a target event.
-
-    Attributes
-    ----------
-    mapping_type : Which target occurrence belongs to a source occurrence.
-    upper : Longest delay; unset means no limit.
-    lower : Shortest delay; unset means no limit.
-    """
+    """Demand on the time from a source event to a target event."""
     mapping_type: MappingType | None = attribute("mappingType")
+    """Which target occurrence belongs to a source occurrence."""
     source: EntityEvent | None = reference("source")
     target: EntityEvent | None = reference("target")
     upper: Time | None = containment("upper")
+    """Longest delay; unset means no limit."""
     lower: Time | None = containment("lower")
+    """Shortest delay; unset means no limit."""
 
 class EventChainLatencyConstraint(TimingConstraint):
-    """Limit of the reaction time or the data age of an event chain.
-
-    Attributes
-    ----------
-    type : Reaction looks forward from each stimulus, age looks back from each response.
-    minimum : Shortest latency; unset means no limit.
-    maximum : Longest latency; unset means no limit, not zero.
-    """
+    """Limit of the reaction time or the data age of an event chain."""
     scope: EventChain | None = reference("scope")
     type: LatencyType | None = attribute("type")
+    """Reaction looks forward from each stimulus, age looks back from each response."""
     minimum: Time | None = containment("minimum")
+    """Shortest latency; unset means no limit."""
     maximum: Time | None = containment("maximum")
+    """Longest latency; unset means no limit, not zero."""
 
 class RepetitionConstraint(TimingConstraint):
-    """Demand on the distance of repeated occurrences of an event.
-
-    Attributes
-    ----------
-    span : Number of steps between the occurrences compared; the default 0 is of no use, read it as 1.
-    lower : Shortest time over span steps, before jitter.
-    upper : Longest time over span steps, before jitter.
-    jitter : Longest delay of an occurrence after its ideal point in time.
-    period : Nominal distance of occurrences.
-    """
+    """Demand on the distance of repeated occurrences of an event."""
     event: EntityEvent | None = reference("event")
     span: int | None = attribute("span")
+    """Number of steps between the occurrences compared; the default 0 is of no use, read it as 1."""
     lower: Time | None = containment("lower")
+    """Shortest time over span steps, before jitter."""
     upper: Time | None = containment("upper")
+    """Longest time over span steps, before jitter."""
     jitter: Time | None = containment("jitter")
+    """Longest delay of an occurrence after its ideal point in time."""
     period: Time | None = containment("period")
+    """Nominal distance of occurrences."""
 
 class DataAgeConstraint(ReferableBaseObject):
-    """Demand on how long a written value of a label is valid.
-
-    Attributes
-    ----------
-    runnable : Runnable that writes the label, not one that reads it.
-    """
+    """Demand on how long a written value of a label is valid."""
     runnable: Runnable | None = reference("runnable")
+    """Runnable that writes the label, not one that reads it."""
     label: Label | None = reference("label")
     data_age: DataAge | None = containment("dataAge")
 
@@ -319,37 +247,25 @@ class DataAge(Element, abstract=True):
     """How long written data is valid."""
 
 class DataAgeCycle(DataAge):
-    """Validity of data, counted in activations of the process that runs the writing runnable.
-
-    Attributes
-    ----------
-    minimum_cycle : Number of activations after the write from which on the data is valid.
-    maximum_cycle : Number of activations after the write until which the data is valid.
-    """
+    """Validity of data, counted in activations of the process that runs the writing runnable."""
     minimum_cycle: int | None = attribute("minimumCycle")
+    """Number of activations after the write from which on the data is valid."""
     maximum_cycle: int | None = attribute("maximumCycle")
+    """Number of activations after the write until which the data is valid."""
 
 class DataAgeTime(DataAge):
-    """Validity of data as time after the write.
-
-    Attributes
-    ----------
-    minimum_time : Time after the write from which on the data is valid.
-    maximum_time : Time after the write until which the data is valid.
-    """
+    """Validity of data as time after the write."""
     minimum_time: Time | None = containment("minimumTime")
+    """Time after the write from which on the data is valid."""
     maximum_time: Time | None = containment("maximumTime")
+    """Time after the write until which the data is valid."""
 
 class Requirement(BaseObject, INamed, abstract=True):
-    """Limit of a metric, with the severity of missing it.
-
-    Attributes
-    ----------
-    severity : How bad a violation is.
-    limit : Metric and its bound, which every instance must keep.
-    """
+    """Limit of a metric, with the severity of missing it."""
     severity: Severity | None = attribute("severity")
+    """How bad a violation is."""
     limit: RequirementLimit | None = containment("limit")
+    """Metric and its bound, which every instance must keep."""
 
 class ProcessRequirement(Requirement):
     """Requirement on a process; an upper limit of the response time is its deadline."""
@@ -368,25 +284,17 @@ class ProcessChainRequirement(Requirement):
     process_chain: ProcessChain | None = reference("processChain")
 
 class RequirementLimit(Element, abstract=True):
-    """Metric and the bound it must keep.
-
-    Attributes
-    ----------
-    limit_type : Whether the metric must not exceed or not fall below the value; undefined leaves the limit unusable.
-    """
+    """Metric and the bound it must keep."""
     limit_type: LimitType | None = attribute("limitType")
+    """Whether the metric must not exceed or not fall below the value; undefined leaves the limit unusable."""
 
 class CPUPercentageRequirementLimit(RequirementLimit):
-    """Bound of a processor load, relative to the capacity of a processing unit.
-
-    Attributes
-    ----------
-    limit_value : Bound; whether it is a percentage or a fraction of 1 is not specified.
-    hardware_context : Processing unit whose capacity is 100 percent.
-    """
+    """Bound of a processor load, relative to the capacity of a processing unit."""
     metric: CPUPercentageMetric | None = attribute("metric")
     limit_value: float | None = attribute("limitValue")
+    """Bound; whether it is a percentage or a fraction of 1 is not specified."""
     hardware_context: ProcessingUnit | None = reference("hardwareContext")
+    """Processing unit whose capacity is 100 percent."""
 
 class FrequencyRequirementLimit(RequirementLimit):
     """Bound of how often something happens per time."""
@@ -394,14 +302,10 @@ class FrequencyRequirementLimit(RequirementLimit):
     limit_value: Frequency | None = containment("limitValue")
 
 class PercentageRequirementLimit(RequirementLimit):
-    """Bound of a ratio.
-
-    Attributes
-    ----------
-    limit_value : Bound; whether it is a percentage or a fraction of 1 is not specified.
-    """
+    """Bound of a ratio."""
     metric: PercentageMetric | None = attribute("metric")
     limit_value: float | None = attribute("limitValue")
+    """Bound; whether it is a percentage or a fraction of 1 is not specified."""
 
 class CountRequirementLimit(RequirementLimit):
     """Bound of a count, such as that of activations."""
@@ -409,37 +313,25 @@ class CountRequirementLimit(RequirementLimit):
     limit_value: int | None = attribute("limitValue")
 
 class TimeRequirementLimit(RequirementLimit):
-    """Bound of a time, such as the response time.
-
-    Attributes
-    ----------
-    metric : What is measured; ResponseTime with an upper limit defines the deadline.
-    limit_value : Bound, greater than zero for response times.
-    """
+    """Bound of a time, such as the response time."""
     metric: TimeMetric | None = attribute("metric")
+    """What is measured; ResponseTime with an upper limit defines the deadline."""
     limit_value: Time | None = containment("limitValue")
+    """Bound, greater than zero for response times."""
 
 class DataCoherencyGroup(ReferableBaseObject):
-    """Labels that must be read or written coherently, as values that belong together.
-
-    Attributes
-    ----------
-    scope : Process, runnable or component within which the accesses are coherent.
-    direction : Whether the coherence concerns reading (input) or writing (output).
-    """
+    """Labels that must be read or written coherently, as values that belong together."""
     labels: list[Label] = references("labels")
     scope: DataGroupScope | None = containment("scope")
+    """Process, runnable or component within which the accesses are coherent."""
     direction: CoherencyDirection | None = attribute("direction")
+    """Whether the coherence concerns reading (input) or writing (output)."""
 
 class DataStabilityGroup(ReferableBaseObject):
-    """Labels whose values must not change within a scope.
-
-    Attributes
-    ----------
-    scope : Process, runnable or component within which the values stay the same.
-    """
+    """Labels whose values must not change within a scope."""
     labels: list[Label] = references("labels")
     scope: DataGroupScope | None = containment("scope")
+    """Process, runnable or component within which the values stay the same."""
 
 class DataGroupScope(Element, abstract=True):
     """Range of code in which data must be coherent or stable."""

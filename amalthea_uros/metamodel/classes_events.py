@@ -38,133 +38,93 @@ class TriggerEvent(EntityEvent, abstract=True):
     """Event that can fire an event stimulus."""
 
 class CustomEvent(TriggerEvent):
-    """Event without predefined meaning, raised by a custom event trigger.
-
-    Attributes
-    ----------
-    event_type : Free text that names the kind of the event.
-    """
+    """Event without predefined meaning, raised by a custom event trigger."""
     event_type: str | None = attribute("eventType")
+    """Free text that names the kind of the event."""
 
 class StimulusEvent(EntityEvent):
-    """Occurrence of a stimulus.
-
-    Attributes
-    ----------
-    entity : Stimulus to observe; unset means any.
-    """
+    """Occurrence of a stimulus."""
     entity: Stimulus | None = reference("entity")
+    """Stimulus to observe; unset means any."""
 
 class ProcessEvent(EntityEvent):
-    """Change of the state of a task or ISR; it cannot fire an event stimulus.
-
-    Attributes
-    ----------
-    event_type : Transition to observe; unset means every one.
-    entity : Task or ISR to observe; unset means any.
-    processing_unit : Counts only what happens on this processing unit; unset means any.
-    """
+    """Change of the state of a task or ISR; it cannot fire an event stimulus."""
     event_type: ProcessEventType | None = attribute("eventType")
+    """Transition to observe; unset means every one."""
     entity: Process | None = reference("entity")
+    """Task or ISR to observe; unset means any."""
     processing_unit: ProcessingUnit | None = reference("processingUnit")
+    """Counts only what happens on this processing unit; unset means any."""
 
 class ProcessChainEvent(EntityEvent):
-    """Change of the state of a process chain.
-
-    Attributes
-    ----------
-    event_type : Transition to observe; unset means every one.
-    entity : Process chain to observe; unset means any.
-    processing_unit : Counts only what happens on this processing unit; unset means any.
-    """
+    """Change of the state of a process chain."""
     event_type: ProcessEventType | None = attribute("eventType")
+    """Transition to observe; unset means every one."""
     entity: ProcessChain | None = reference("entity")
+    """Process chain to observe; unset means any."""
     processing_unit: ProcessingUnit | None = reference("processingUnit")
+    """Counts only what happens on this processing unit; unset means any."""
 
 class RunnableEvent(TriggerEvent):
-    """Start, suspension, resumption or termination of a runnable.
-
-    Attributes
-    ----------
-    event_type : Transition to observe; unset means every one.
-    entity : Runnable to observe; unset means any.
-    process : Counts only executions in this process; unset means any.
-    processing_unit : Counts only what happens on this processing unit; unset means any.
-    """
+    """Start, suspension, resumption or termination of a runnable."""
     event_type: RunnableEventType | None = attribute("eventType")
+    """Transition to observe; unset means every one."""
     entity: Runnable | None = reference("entity")
+    """Runnable to observe; unset means any."""
     process: Process | None = reference("process")
+    """Counts only executions in this process; unset means any."""
     processing_unit: ProcessingUnit | None = reference("processingUnit")
+    """Counts only what happens on this processing unit; unset means any."""
 
 class LabelEvent(TriggerEvent):
-    """Read or write access to a label.
-
-    Attributes
-    ----------
-    event_type : Kind of access to observe; unset means every one.
-    entity : Label to observe; unset means any.
-    runnable : Counts only accesses by this runnable; unset means any.
-    process : Counts only accesses by this process; unset means any.
-    """
+    """Read or write access to a label."""
     event_type: LabelEventType | None = attribute("eventType")
+    """Kind of access to observe; unset means every one."""
     entity: Label | None = reference("entity")
+    """Label to observe; unset means any."""
     runnable: Runnable | None = reference("runnable")
+    """Counts only accesses by this runnable; unset means any."""
     process: Process | None = reference("process")
+    """Counts only accesses by this process; unset means any."""
 
 class ModeLabelEvent(TriggerEvent):
-    """Access to a mode label. (since 2.1.0)
-
-    Attributes
-    ----------
-    event_type : Kind of access to observe; unset means every one.
-    entity : Mode label to observe; unset means any.
-    runnable : Counts only accesses by this runnable; unset means any.
-    process : Counts only accesses by this process; unset means any.
-    """
+    """Access to a mode label. (since 2.1.0)"""
     event_type: ModeLabelEventType | None = attribute("eventType")
+    """Kind of access to observe; unset means every one."""
     entity: ModeLabel | None = reference("entity")
+    """Mode label to observe; unset means any."""
     runnable: Runnable | None = reference("runnable")
+    """Counts only accesses by this runnable; unset means any."""
     process: Process | None = reference("process")
+    """Counts only accesses by this process; unset means any."""
 
 class ChannelEvent(TriggerEvent):
-    """Sending to or receiving from a channel.
-
-    Attributes
-    ----------
-    event_type : Kind of access to observe; unset means every one.
-    entity : Channel to observe; unset means any.
-    runnable : Counts only accesses by this runnable; unset means any.
-    process : Counts only accesses by this process; unset means any.
-    """
+    """Sending to or receiving from a channel."""
     event_type: ChannelEventType | None = attribute("eventType")
+    """Kind of access to observe; unset means every one."""
     entity: Channel | None = reference("entity")
+    """Channel to observe; unset means any."""
     runnable: Runnable | None = reference("runnable")
+    """Counts only accesses by this runnable; unset means any."""
     process: Process | None = reference("process")
+    """Counts only accesses by this process; unset means any."""
 
 class SemaphoreEvent(EntityEvent):
-    """Locking or unlocking of a semaphore.
-
-    Attributes
-    ----------
-    event_type : Kind of access to observe; unset means every one.
-    entity : Semaphore to observe; unset means any.
-    runnable : Counts only accesses by this runnable; unset means any.
-    process : Counts only accesses by this process; unset means any.
-    processing_unit : Counts only what happens on this processing unit; unset means any.
-    """
+    """Locking or unlocking of a semaphore."""
     event_type: SemaphoreEventType | None = attribute("eventType")
+    """Kind of access to observe; unset means every one."""
     entity: Semaphore | None = reference("entity")
+    """Semaphore to observe; unset means any."""
     runnable: Runnable | None = reference("runnable")
+    """Counts only accesses by this runnable; unset means any."""
     process: Process | None = reference("process")
+    """Counts only accesses by this process; unset means any."""
     processing_unit: ProcessingUnit | None = reference("processingUnit")
+    """Counts only what happens on this processing unit; unset means any."""
 
 class ComponentEvent(EntityEvent):
-    """Start or end of a component, derived from its runnables.
-
-    Attributes
-    ----------
-    event_type : Start is that of the first runnable; end comes when all runnables were executed at least once.
-    entity : Component to observe; unset means any.
-    """
+    """Start or end of a component, derived from its runnables."""
     event_type: ComponentEventType | None = attribute("eventType")
+    """Start is that of the first runnable; end comes when all runnables were executed at least once."""
     entity: Component | None = reference("entity")
+    """Component to observe; unset means any."""

@@ -16,65 +16,45 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes_enums import CacheType, HwFeatureType, MemoryType, PortInterface, PortType, PuType, SchedPolicy, StructureType, WriteStrategy
 
 class HWModel(BaseObject):
-    """Sub-model of the hardware with its definitions, structures and domains.
-
-    Attributes
-    ----------
-    definitions : Types of processing units, memories, caches and connection handlers, to be shared by modules.
-    """
+    """Sub-model of the hardware with its definitions, structures and domains."""
     definitions: list[HwDefinition] = containments("definitions")
+    """Types of processing units, memories, caches and connection handlers, to be shared by modules."""
     feature_categories: list[HwFeatureCategory] = containments("featureCategories")
     structures: list[HwStructure] = containments("structures")
     domains: list[HwDomain] = containments("domains")
 
 class HwStructure(ReferableBaseObject, ITaggable):
-    """Part of the hardware, such as an ECU, microcontroller or cluster, that contains modules and further parts.
-
-    Attributes
-    ----------
-    structure_type : Kind of the part, such as ECU or microcontroller.
-    ports : Outer ports; a connection from inside to them delegates the port.
-    """
+    """Part of the hardware, such as an ECU, microcontroller or cluster, that contains modules and further parts."""
     structure_type: StructureType | None = attribute("structureType")
+    """Kind of the part, such as ECU or microcontroller."""
     ports: list[HwPort] = containments("ports")
+    """Outer ports; a connection from inside to them delegates the port."""
     structures: list[HwStructure] = containments("structures")
     modules: list[HwModule] = containments("modules")
     connections: list[HwConnection] = containments("connections")
 
 class HwModule(ReferableBaseObject, ITaggable, abstract=True):
-    """Base of processing units, memories, caches and connection handlers.
-
-    Attributes
-    ----------
-    frequency_domain : Clock of the module; a processing unit without one has no execution times.
-    """
+    """Base of processing units, memories, caches and connection handlers."""
     ports: list[HwPort] = containments("ports")
     power_domain: PowerDomain | None = reference("powerDomain")
     frequency_domain: FrequencyDomain | None = reference("frequencyDomain")
+    """Clock of the module; a processing unit without one has no execution times."""
 
 class HwDomain(ReferableBaseObject, ITaggable, abstract=True):
     """Part of the hardware that shares a clock or a supply."""
 
 class FrequencyDomain(HwDomain):
-    """Modules that share a clock.
-
-    Attributes
-    ----------
-    default_value : Clock frequency, greater than zero; it converts ticks and cycles to time.
-    clock_gating : Whether the clock can be switched off.
-    """
+    """Modules that share a clock."""
     default_value: Frequency | None = containment("defaultValue")
+    """Clock frequency, greater than zero; it converts ticks and cycles to time."""
     clock_gating: bool | None = attribute("clockGating")
+    """Whether the clock can be switched off."""
 
 class PowerDomain(HwDomain):
-    """Modules that share a supply voltage.
-
-    Attributes
-    ----------
-    power_gating : Whether the supply can be switched off.
-    """
+    """Modules that share a supply voltage."""
     default_value: Voltage | None = containment("defaultValue")
     power_gating: bool | None = attribute("powerGating")
+    """Whether the supply can be switched off."""
 
 class HwDestination(IReferable, abstract=True):
     """Hardware that can be accessed, such as a memory or another processing unit."""
@@ -83,17 +63,13 @@ class HwPathElement(IReferable, abstract=True):
     """Hardware that an access path can lead through."""
 
 class ProcessingUnit(HwModule, HwDestination, HwPathElement):
-    """Core or accelerator that executes processes.
-
-    Attributes
-    ----------
-    definition : Its type, by which the extended entries of ticks and the hardware features are chosen.
-    access_elements : Destinations it can reach and what an access to each costs.
-    caches : Caches that lie inside the processing unit.
-    """
+    """Core or accelerator that executes processes."""
     definition: ProcessingUnitDefinition | None = reference("definition")
+    """Its type, by which the extended entries of ticks and the hardware features are chosen."""
     access_elements: list[HwAccessElement] = containments("accessElements")
+    """Destinations it can reach and what an access to each costs."""
     caches: list[Cache] = containments("caches")
+    """Caches that lie inside the processing unit."""
 
 class Memory(HwModule, HwDestination):
     """Memory module into which labels and other elements are mapped."""
@@ -109,151 +85,111 @@ class HwFeatureCategory(ReferableBaseObject, IDescription):
     features: list[HwFeature] = containments("features")
 
 class HwFeature(ReferableBaseObject):
-    """Number that a processing unit definition has for a feature category.
-
-    Attributes
-    ----------
-    value : Number in the sense of its category, such as ticks per unit of an execution need or instructions per cycle.
-    """
+    """Number that a processing unit definition has for a feature category."""
     value: float | None = attribute("value")
+    """Number in the sense of its category, such as ticks per unit of an execution need or instructions per cycle."""
 
 class HwPort(ReferableBaseObject, ITaggable):
-    """Point at which a module or structure is connected.
-
-    Attributes
-    ----------
-    bit_width : Bits per beat; 0 (default) means not given.
-    priority : Priority of the port where a connection handler arbitrates by priority.
-    port_type : Initiator or responder; a connection joins one of each, a delegation two of the same type.
-    port_interface : Bus or protocol; connected ports must agree in it.
-    """
+    """Point at which a module or structure is connected."""
     bit_width: int | None = attribute("bitWidth")
+    """Bits per beat; 0 (default) means not given."""
     priority: int | None = attribute("priority")
+    """Priority of the port where a connection handler arbitrates by priority."""
     port_type: PortType | None = attribute("portType")
+    """Initiator or responder; a connection joins one of each, a delegation two of the same type."""
     port_interface: PortInterface | None = attribute("portInterface")
+    """Bus or protocol; connected ports must agree in it."""
 
 class ConnectionHandler(HwModule, HwPathElement):
-    """Bus, crossbar or other interconnect that arbitrates between transfers.
-
-    Attributes
-    ----------
-    internal_connections : Connections between its own ports, whose latencies may override those of the definition.
-    """
+    """Bus, crossbar or other interconnect that arbitrates between transfers."""
     definition: ConnectionHandlerDefinition | None = reference("definition")
     internal_connections: list[HwConnection] = containments("internalConnections")
+    """Connections between its own ports, whose latencies may override those of the definition."""
 
 class HwConnection(ReferableBaseObject, HwPathElement, ITaggable):
-    """Link between two hardware ports.
-
-    Attributes
-    ----------
-    read_latency : Cycles of a read, request and response together, at the frequency of the preceding path element.
-    write_latency : Cycles of a write request, at the frequency of the preceding path element.
-    data_rate : Data per time, as an alternative to latencies.
-    """
+    """Link between two hardware ports."""
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
+    """Cycles of a read, request and response together, at the frequency of the preceding path element."""
     write_latency: IDiscreteValueDeviation | None = containment("writeLatency")
+    """Cycles of a write request, at the frequency of the preceding path element."""
     data_rate: DataRate | None = containment("dataRate")
+    """Data per time, as an alternative to latencies."""
     port1: HwPort | None = reference("port1")
     port2: HwPort | None = reference("port2")
 
 class HwAccessElement(ITaggable, INamed):
-    """What an access of a processing unit to a destination costs.
-
-    Attributes
-    ----------
-    access_path : Way to the destination; if given, its elements make up the cost instead of the latencies here.
-    read_latency : Cycles of a read, request and response together, at the frequency of the processing unit.
-    write_latency : Cycles of a write request, at the frequency of the processing unit.
-    data_rate : Data per time, as an alternative to latencies.
-    """
+    """What an access of a processing unit to a destination costs."""
     destination: HwDestination | None = reference("destination")
     access_path: HwAccessPath | None = containment("accessPath")
+    """Way to the destination; if given, its elements make up the cost instead of the latencies here."""
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
+    """Cycles of a read, request and response together, at the frequency of the processing unit."""
     write_latency: IDiscreteValueDeviation | None = containment("writeLatency")
+    """Cycles of a write request, at the frequency of the processing unit."""
     data_rate: DataRate | None = containment("dataRate")
+    """Data per time, as an alternative to latencies."""
 
 class HwDefinition(ReferableBaseObject, ITaggable, abstract=True):
     """Base of the types of hardware modules."""
 
 class ProcessingUnitDefinition(HwDefinition):
-    """Type of a processing unit.
-
-    Attributes
-    ----------
-    features : Hardware features, at most one per category.
-    classifiers : Properties that core allocation constraints can ask for.
-    """
+    """Type of a processing unit."""
     pu_type: PuType | None = attribute("puType")
     features: list[HwFeature] = references("features")
+    """Hardware features, at most one per category."""
     classifiers: list[CoreClassifier] = references("classifiers")
+    """Properties that core allocation constraints can ask for."""
 
 class ConnectionHandlerDefinition(HwDefinition):
-    """Type of a connection handler.
-
-    Attributes
-    ----------
-    policy : Arbitration between transfers that wait at the same time.
-    read_latency : Cycles of a read, request and response together, at the frequency of the handler.
-    write_latency : Cycles of a write request, at the frequency of the handler.
-    data_rate : Data per time, as an alternative to latencies.
-    max_concurrent_transfers : Transfers at the same time (default 1), not more than initiator or responder ports.
-    """
+    """Type of a connection handler."""
     policy: SchedPolicy | None = attribute("policy")
+    """Arbitration between transfers that wait at the same time."""
     read_latency: IDiscreteValueDeviation | None = containment("readLatency")
+    """Cycles of a read, request and response together, at the frequency of the handler."""
     write_latency: IDiscreteValueDeviation | None = containment("writeLatency")
+    """Cycles of a write request, at the frequency of the handler."""
     data_rate: DataRate | None = containment("dataRate")
+    """Data per time, as an alternative to latencies."""
     max_burst_size: int | None = attribute("maxBurstSize")
     max_concurrent_transfers: int | None = attribute("maxConcurrentTransfers")
+    """Transfers at the same time (default 1), not more than initiator or responder ports."""
 
 class MemoryDefinition(HwDefinition):
-    """Type of a memory.
-
-    Attributes
-    ----------
-    access_latency : Cycles of an access at the frequency of the memory, added to the latency of the way there.
-    data_rate : Data per time, as an alternative to the latency.
-    classifiers : Properties that memory mapping constraints can ask for.
-    """
+    """Type of a memory."""
     size: DataSize | None = containment("size")
     access_latency: IDiscreteValueDeviation | None = containment("accessLatency")
+    """Cycles of an access at the frequency of the memory, added to the latency of the way there."""
     data_rate: DataRate | None = containment("dataRate")
+    """Data per time, as an alternative to the latency."""
     memory_type: MemoryType | None = attribute("memoryType")
     classifiers: list[MemoryClassifier] = references("classifiers")
+    """Properties that memory mapping constraints can ask for."""
 
 class CacheDefinition(HwDefinition):
-    """Type of a cache.
-
-    Attributes
-    ----------
-    access_latency : Cycles of an access at the frequency of the cache.
-    n_ways : Associativity as the number of ways; 0 (default) means not given.
-    hit_rate : Percentage of the accesses that hit; how it combines with cache misses of label accesses is not specified.
-    """
+    """Type of a cache."""
     size: DataSize | None = containment("size")
     line_size: DataSize | None = containment("lineSize")
     access_latency: IDiscreteValueDeviation | None = containment("accessLatency")
+    """Cycles of an access at the frequency of the cache."""
     cache_type: CacheType | None = attribute("cacheType")
     write_strategy: WriteStrategy | None = attribute("writeStrategy")
     n_ways: int | None = attribute("nWays")
+    """Associativity as the number of ways; 0 (default) means not given."""
     coherency: bool | None = attribute("coherency")
     exclusive: bool | None = attribute("exclusive")
     hit_rate: float | None = attribute("hitRate")
+    """Percentage of the accesses that hit; how it combines with cache misses of label accesses is not specified."""
 
 class HwPath(Element, abstract=True):
     """Way from a processing unit to a destination."""
 
 class HwAccessPath(HwPath, INamed):
-    """Way of an access through connections, connection handlers and caches.
-
-    Attributes
-    ----------
-    path_elements : Elements from source to destination; the first and the last are connections.
-    start_address : First address of the range by which the source reaches the destination.
-    end_address : Last address of the range, not below the start address.
-    mem_offset : Offset of the range in the memory; offset plus length must fit into its size in bytes.
-    """
+    """Way of an access through connections, connection handlers and caches."""
     path_elements: list[HwPathElement] = references("pathElements")
+    """Elements from source to destination; the first and the last are connections."""
     start_address: int | None = attribute("startAddress")
+    """First address of the range by which the source reaches the destination."""
     end_address: int | None = attribute("endAddress")
+    """Last address of the range, not below the start address."""
     mem_offset: int | None = attribute("memOffset")
+    """Offset of the range in the memory; offset plus length must fit into its size in bytes."""

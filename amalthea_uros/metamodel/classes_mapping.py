@@ -18,12 +18,7 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes_sw import AbstractMemoryElement, ISR, Label, Runnable, Section, Task
 
 class MappingModel(BaseObject):
-    """Sub-model that puts software on operating systems and hardware.
-
-    Attributes
-    ----------
-    address_mapping_type : Whether addresses of memory mappings are absolute, offsets from the start of the memory, or not used.
-    """
+    """Sub-model that puts software on operating systems and hardware."""
     scheduler_allocation: list[SchedulerAllocation] = containments("schedulerAllocation")
     runnable_allocation: list[RunnableAllocation] = containments("runnableAllocation")
     task_allocation: list[TaskAllocation] = containments("taskAllocation")
@@ -31,77 +26,54 @@ class MappingModel(BaseObject):
     memory_mapping: list[MemoryMapping] = containments("memoryMapping")
     physical_section_mapping: list[PhysicalSectionMapping] = containments("physicalSectionMapping")
     address_mapping_type: MemoryAddressMappingType | None = attribute("addressMappingType")
+    """Whether addresses of memory mappings are absolute, offsets from the start of the memory, or not used."""
 
 class SchedulerAllocation(BaseObject):
-    """Assignment of processing units to a scheduler.
-
-    Attributes
-    ----------
-    responsibility : Processing units for which the scheduler decides; several make it a global scheduler.
-    executing_pu : Processing unit that executes the scheduler itself, that is, its computation items.
-    """
+    """Assignment of processing units to a scheduler."""
     scheduler: Scheduler | None = reference("scheduler")
     responsibility: list[ProcessingUnit] = references("responsibility")
+    """Processing units for which the scheduler decides; several make it a global scheduler."""
     executing_pu: ProcessingUnit | None = reference("executingPU")
+    """Processing unit that executes the scheduler itself, that is, its computation items."""
 
 class TaskAllocation(BaseObject, ISchedulingParameterContainer):
-    """Assignment of a task to a scheduler, with its scheduling parameters; a task has exactly one.
-
-    Attributes
-    ----------
-    affinity : Restricts the task to some processing units of its scheduler; empty means all of them, several allow migration.
-    parameter_extensions : Further scheduling parameters as text.
-    """
+    """Assignment of a task to a scheduler, with its scheduling parameters; a task has exactly one."""
     task: Task | None = reference("task")
     scheduler: TaskScheduler | None = reference("scheduler")
     affinity: list[ProcessingUnit] = references("affinity")
+    """Restricts the task to some processing units of its scheduler; empty means all of them, several allow migration."""
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # until 1.2.0
+    """Further scheduling parameters as text."""
 
 class ISRAllocation(BaseObject):
-    """Assignment of an ISR to an interrupt controller, on whose processing units it runs.
-
-    Attributes
-    ----------
-    priority : Priority among ISRs; they outrank tasks whatever it is.
-    """
+    """Assignment of an ISR to an interrupt controller, on whose processing units it runs."""
     isr: ISR | None = reference("isr")
     controller: InterruptController | None = reference("controller")
     priority: int | None = attribute("priority")
+    """Priority among ISRs; they outrank tasks whatever it is."""
 
 class RunnableAllocation(BaseObject):
-    """Assignment of a runnable to a scheduler; by itself it does not make the runnable run.
-
-    Attributes
-    ----------
-    entity : Runnable that is assigned.
-    """
+    """Assignment of a runnable to a scheduler; by itself it does not make the runnable run."""
     scheduler: Scheduler | None = reference("scheduler")
     entity: Runnable | None = reference("entity")
+    """Runnable that is assigned."""
 
 class MemoryMapping(BaseObject):
-    """Placement of a label or another element in a memory; it decides what an access costs.
-
-    Attributes
-    ----------
-    memory_position_address : Absolute address or offset in the memory, as the mapping model says (hexadecimal in files).
-    """
+    """Placement of a label or another element in a memory; it decides what an access costs."""
     abstract_element: AbstractMemoryElement | None = reference("abstractElement")
     memory: Memory | None = reference("memory")
     memory_position_address: int | None = attribute("memoryPositionAddress")
+    """Absolute address or offset in the memory, as the mapping model says (hexadecimal in files)."""
 
 class PhysicalSectionMapping(ReferableBaseObject):
-    """Placement of sections in an address range of a memory.
-
-    Attributes
-    ----------
-    origin : Sections that are placed together.
-    start_address : First address of the range (hexadecimal in files).
-    end_address : Last address of the range (hexadecimal in files).
-    run_entities : Runnables that lie in the range.
-    """
+    """Placement of sections in an address range of a memory."""
     origin: list[Section] = references("origin")
+    """Sections that are placed together."""
     memory: Memory | None = reference("memory")
     start_address: int | None = attribute("startAddress")
+    """First address of the range (hexadecimal in files)."""
     end_address: int | None = attribute("endAddress")
+    """Last address of the range (hexadecimal in files)."""
     labels: list[Label] = references("labels")
     run_entities: list[Runnable] = references("runEntities")
+    """Runnables that lie in the range."""

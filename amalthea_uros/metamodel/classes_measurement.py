@@ -20,15 +20,11 @@ class MeasurementModel(BaseObject):
     measurements: list[Measurement] = containments("measurements")
 
 class Measurement(BaseObject, abstract=True):
-    """Measured runtimes of one object. (until 0.9.9)
-
-    Attributes
-    ----------
-    runtimes : Measured values one by one.
-    runtime_deviation : Measured values summarised as a deviation.
-    """
+    """Measured runtimes of one object. (until 0.9.9)"""
     runtimes: list[Time] = containments("runtimes")
+    """Measured values one by one."""
     runtime_deviation: ITimeDeviation | None = containment("runtimeDeviation")
+    """Measured values summarised as a deviation."""
 
 class EventChainMeasurement(Measurement):
     """Measured runtimes of an event chain. (until 0.9.9)"""

@@ -25,151 +25,103 @@ class OSModel(BaseObject):
     scheduling_parameter_definitions: list[SchedulingParameterDefinition] = containments("schedulingParameterDefinitions")  # since 2.0.0
 
 class OsDataConsistency(BaseObject):
-    """How an operating system keeps data consistent while processes preempt each other.
-
-    Attributes
-    ----------
-    mode : Who ensures consistency; labels and label accesses may override it.
-    """
+    """How an operating system keeps data consistent while processes preempt each other."""
     mode: OsDataConsistencyMode | None = attribute("mode")
+    """Who ensures consistency; labels and label accesses may override it."""
     data_stability: DataStability | None = containment("dataStability")
     non_atomic_data_coherency: NonAtomicDataCoherency | None = containment("nonAtomicDataCoherency")
 
 class DataStability(Element):
-    """Protection that keeps the values of labels unchanged for an interval.
-
-    Attributes
-    ----------
-    algorithm : Free text that names the protection.
-    access_multiplicity : Whether all data is protected or only data that is accessed several times.
-    level : Interval in which all reads of a label see the same value.
-    """
+    """Protection that keeps the values of labels unchanged for an interval."""
     enabled: bool | None = attribute("enabled")
     algorithm: str | None = attribute("algorithm")
+    """Free text that names the protection."""
     access_multiplicity: AccessMultiplicity | None = attribute("accessMultiplicity")
+    """Whether all data is protected or only data that is accessed several times."""
     level: DataStabilityLevel | None = attribute("level")
+    """Interval in which all reads of a label see the same value."""
 
 class NonAtomicDataCoherency(Element):
-    """Protection of data that cannot be accessed in one step.
-
-    Attributes
-    ----------
-    algorithm : Free text that names the protection.
-    access_multiplicity : Whether all data is protected or only data that is accessed several times.
-    """
+    """Protection of data that cannot be accessed in one step."""
     enabled: bool | None = attribute("enabled")
     algorithm: str | None = attribute("algorithm")
+    """Free text that names the protection."""
     access_multiplicity: AccessMultiplicity | None = attribute("accessMultiplicity")
+    """Whether all data is protected or only data that is accessed several times."""
 
 class Semaphore(ReferableBaseObject):
-    """Lock that limits how many users hold it at the same time.
-
-    Attributes
-    ----------
-    initial_value : Users that hold it already at the start (default 0); it is not the number of free places.
-    max_value : Largest number of users at the same time; the default is 1, but 0 until 2.0.0.
-    ownership : Whether only the owner may release it (default true).
-    priority_ceiling_protocol : Whether the holder runs at the highest priority of all users.
-    """
+    """Lock that limits how many users hold it at the same time."""
     semaphore_type: SemaphoreType | None = attribute("semaphoreType")
     initial_value: int | None = attribute("initialValue")
+    """Users that hold it already at the start (default 0); it is not the number of free places."""
     max_value: int | None = attribute("maxValue")
+    """Largest number of users at the same time; the default is 1, but 0 until 2.0.0."""
     ownership: bool | None = attribute("ownership")  # since 3.0.0
+    """Whether only the owner may release it (default true)."""
     priority_ceiling_protocol: bool | None = attribute("priorityCeilingProtocol")
+    """Whether the holder runs at the highest priority of all users."""
 
 class ISchedulingParameterContainer(Element, abstract=True):
-    """Object that gives values for scheduling parameters. (since 2.0.0)
-
-    Attributes
-    ----------
-    scheduling_parameters : Values by definition; until 1.2.0 one object of fixed fields. The highest priority wins.
-    """
+    """Object that gives values for scheduling parameters. (since 2.0.0)"""
     scheduling_parameters: list[SchedulingParameter | SchedulingParameters] = containments("schedulingParameters")
+    """Values by definition; until 1.2.0 one object of fixed fields. The highest priority wins."""
 
 class Scheduler(ReferableBaseObject, ISchedulingParameterContainer, abstract=True):
-    """Part of an operating system that decides what a processing unit executes.
-
-    Attributes
-    ----------
-    definition : Scheduling algorithm, by reference to its definition.
-    computation_items : Cost of one scheduling decision, paid on the executing processing unit.
-    """
+    """Part of an operating system that decides what a processing unit executes."""
     definition: SchedulerDefinition | None = reference("definition")  # since 2.0.0
+    """Scheduling algorithm, by reference to its definition."""
     computation_items: list[ComputationItem] = containments("computationItems")
+    """Cost of one scheduling decision, paid on the executing processing unit."""
 
 class TaskScheduler(Scheduler):
-    """Scheduler of tasks, possibly below another scheduler.
-
-    Attributes
-    ----------
-    parent_association : Link to a scheduler above; this one decides only while the parent grants it time.
-    scheduling_algorithm : Scheduling algorithm as an object; replaced by the definition in 2.0.0.
-    """
+    """Scheduler of tasks, possibly below another scheduler."""
     parent_association: SchedulerAssociation | None = containment("parentAssociation")
+    """Link to a scheduler above; this one decides only while the parent grants it time."""
     scheduling_algorithm: TaskSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
+    """Scheduling algorithm as an object; replaced by the definition in 2.0.0."""
 
 class SchedulerAssociation(ISchedulingParameterContainer):
-    """Link from a scheduler to its parent, with the parameters the parent's algorithm needs for this child.
-
-    Attributes
-    ----------
-    parameter_extensions : Further scheduling parameters as text.
-    """
+    """Link from a scheduler to its parent, with the parameters the parent's algorithm needs for this child."""
     parent: TaskScheduler | None = reference("parent")
     parameter_extensions: list[ParameterExtension] = containments("parameterExtensions")  # until 1.2.0
+    """Further scheduling parameters as text."""
 
 class InterruptController(Scheduler):
-    """Scheduler of ISRs.
-
-    Attributes
-    ----------
-    scheduling_algorithm : Scheduling algorithm as an object; replaced by the definition in 2.0.0.
-    """
+    """Scheduler of ISRs."""
     scheduling_algorithm: InterruptSchedulingAlgorithm | None = containment("schedulingAlgorithm")  # until 1.2.0
+    """Scheduling algorithm as an object; replaced by the definition in 2.0.0."""
 
 class OsDefinition(ReferableBaseObject, ITaggable, abstract=True):
     """Base of definitions that operating systems share. (since 2.0.0)"""
 
 class SchedulerDefinition(OsDefinition, IDescription):
-    """Scheduling algorithm, known by its name, with the parameters it takes. (since 2.0.0)
-
-    Attributes
-    ----------
-    algorithm_parameters : Parameters that are set once per scheduler.
-    process_parameters : Parameters that are set per allocated task or child scheduler.
-    requires_parent_scheduler : Whether the algorithm works only below another scheduler.
-    passes_parameters_upwards : Whether the process parameters of the children are handed to the parent scheduler.
-    has_exactly_one_child : Whether it takes exactly one child, a task or a scheduler.
-    """
+    """Scheduling algorithm, known by its name, with the parameters it takes. (since 2.0.0)"""
     algorithm_parameters: list[SchedulingParameterDefinition] = references("algorithmParameters")
+    """Parameters that are set once per scheduler."""
     process_parameters: list[SchedulingParameterDefinition] = references("processParameters")
+    """Parameters that are set per allocated task or child scheduler."""
     requires_parent_scheduler: bool | None = attribute("requiresParentScheduler")
+    """Whether the algorithm works only below another scheduler."""
     passes_parameters_upwards: bool | None = attribute("passesParametersUpwards")
+    """Whether the process parameters of the children are handed to the parent scheduler."""
     has_exactly_one_child: bool | None = attribute("hasExactlyOneChild")
+    """Whether it takes exactly one child, a task or a scheduler."""
 
 class SchedulingParameterDefinition(OsDefinition):
-    """Name, type and default of a scheduling parameter, such as the priority. (since 2.0.0)
-
-    Attributes
-    ----------
-    many : Whether the parameter takes a list of values.
-    mandatory : Whether a value must be given (default true) unless there is a default value.
-    default_value : Value for allocations that give none.
-    """
+    """Name, type and default of a scheduling parameter, such as the priority. (since 2.0.0)"""
     type: ParameterType | None = attribute("type")
     many: bool | None = attribute("many")
+    """Whether the parameter takes a list of values."""
     mandatory: bool | None = attribute("mandatory")
+    """Whether a value must be given (default true) unless there is a default value."""
     default_value: Value | None = containment("defaultValue")
+    """Value for allocations that give none."""
 
 class SchedulingParameter(Element):
-    """Map entry from a parameter definition to a value. (since 2.0.0)
-
-    Attributes
-    ----------
-    value : Value of the type the definition demands, e.g. IntegerObject for a priority; a ListObject for several values.
-    """
+    """Map entry from a parameter definition to a value. (since 2.0.0)"""
     key: SchedulingParameterDefinition | None = reference("key")
     value: Value | None = containment("value")
+    """Value of the type the definition demands, e.g. IntegerObject for a priority; a ListObject for several values."""
 
 class OsOverhead(OsDefinition):
     """Execution cost of operating system functions, to be shared by operating systems."""
@@ -178,30 +130,24 @@ class OsOverhead(OsDefinition):
     isr_category2_overhead: OsISROverhead | None = containment("isrCategory2Overhead")
 
 class OsAPIOverhead(BaseObject):
-    """Ticks that calls of operating system functions cost the caller.
-
-    Attributes
-    ----------
-    api_send_message : Cost of an activation or an event across cores.
-    api_terminate_task : Cost of an explicit termination, paid by the process that terminates.
-    api_schedule : Cost of an explicit request for scheduling.
-    api_request_resource : Cost of requesting a resource, paid by the runnable.
-    api_release_resource : Cost of releasing a resource, paid by the runnable.
-    api_activate_task : Cost of an activation, paid by the process that activates.
-    api_enforced_migration : Cost of moving a task to another scheduler.
-    api_ioc_read : Cost of a read in communication between OS applications (IOC).
-    api_ioc_write : Cost of a write in communication between OS applications (IOC).
-    """
+    """Ticks that calls of operating system functions cost the caller."""
     api_send_message: Ticks | None = containment("apiSendMessage")
+    """Cost of an activation or an event across cores."""
     api_terminate_task: Ticks | None = containment("apiTerminateTask")
+    """Cost of an explicit termination, paid by the process that terminates."""
     api_schedule: Ticks | None = containment("apiSchedule")
+    """Cost of an explicit request for scheduling."""
     api_request_resource: Ticks | None = containment("apiRequestResource")
+    """Cost of requesting a resource, paid by the runnable."""
     api_release_resource: Ticks | None = containment("apiReleaseResource")
+    """Cost of releasing a resource, paid by the runnable."""
     api_set_event: Ticks | None = containment("apiSetEvent")
     api_wait_event: Ticks | None = containment("apiWaitEvent")
     api_clear_event: Ticks | None = containment("apiClearEvent")
     api_activate_task: Ticks | None = containment("apiActivateTask")
+    """Cost of an activation, paid by the process that activates."""
     api_enforced_migration: Ticks | None = containment("apiEnforcedMigration")
+    """Cost of moving a task to another scheduler."""
     api_suspend_os_interrupts: Ticks | None = containment("apiSuspendOsInterrupts")
     api_resume_os_interrupts: Ticks | None = containment("apiResumeOsInterrupts")
     api_request_spinlock: Ticks | None = containment("apiRequestSpinlock")
@@ -210,27 +156,21 @@ class OsAPIOverhead(BaseObject):
     api_sender_receiver_write: Ticks | None = containment("apiSenderReceiverWrite")
     api_synchronous_server_call_point: Ticks | None = containment("apiSynchronousServerCallPoint")
     api_ioc_read: Ticks | None = containment("apiIocRead")
+    """Cost of a read in communication between OS applications (IOC)."""
     api_ioc_write: Ticks | None = containment("apiIocWrite")
+    """Cost of a write in communication between OS applications (IOC)."""
 
 class OsISROverhead(BaseObject):
-    """Ticks that the operating system spends around an ISR.
-
-    Attributes
-    ----------
-    pre_execution_overhead : Cost at the start of the ISR.
-    post_execution_overhead : Cost at the termination of the ISR.
-    """
+    """Ticks that the operating system spends around an ISR."""
     pre_execution_overhead: Ticks | None = containment("preExecutionOverhead")
+    """Cost at the start of the ISR."""
     post_execution_overhead: Ticks | None = containment("postExecutionOverhead")
+    """Cost at the termination of the ISR."""
 
 class OperatingSystem(BaseObject, INamed):
-    """Operating system with its task schedulers and interrupt controllers.
-
-    Attributes
-    ----------
-    overhead : Cost of its functions; without it they take no time.
-    """
+    """Operating system with its task schedulers and interrupt controllers."""
     overhead: OsOverhead | None = reference("overhead")
+    """Cost of its functions; without it they take no time."""
     task_schedulers: list[TaskScheduler] = containments("taskSchedulers")
     interrupt_controllers: list[InterruptController] = containments("interruptControllers")
     os_data_consistency: OsDataConsistency | None = containment("osDataConsistency")
@@ -242,19 +182,15 @@ class VendorOperatingSystem(OperatingSystem):
     version: str | None = attribute("version")
 
 class SchedulingParameters(Element):
-    """Scheduling parameters of a task or child scheduler as fixed fields. (until 1.2.0)
-
-    Attributes
-    ----------
-    priority : Priority; a higher value means more urgent.
-    min_budget : Least budget per replenishment, used when the budget is an interval.
-    max_budget : Largest budget per replenishment, which counts if the budget is no interval.
-    replenishment : Period after which the budget is restored.
-    """
+    """Scheduling parameters of a task or child scheduler as fixed fields. (until 1.2.0)"""
     priority: int | None = attribute("priority")
+    """Priority; a higher value means more urgent."""
     min_budget: Time | None = containment("minBudget")
+    """Least budget per replenishment, used when the budget is an interval."""
     max_budget: Time | None = containment("maxBudget")
+    """Largest budget per replenishment, which counts if the budget is no interval."""
     replenishment: Time | None = containment("replenishment")
+    """Period after which the budget is restored."""
 
 class ParameterExtension(Element):
     """Map entry from a key to a text, for parameters without a field. (until 1.2.0)"""
@@ -289,13 +225,9 @@ class RateMonotonic(FixedPriority):
     """Scheduling by fixed priority in which the shortest period ranks highest. (until 1.2.0)"""
 
 class Pfair(TaskSchedulingAlgorithm, abstract=True):
-    """Proportionate fair scheduling, which allots time in quanta. (until 1.2.0)
-
-    Attributes
-    ----------
-    quant_size_ns : Length of a quantum in nanoseconds.
-    """
+    """Proportionate fair scheduling, which allots time in quanta. (until 1.2.0)"""
     quant_size_ns: int | None = attribute("quantSizeNs")
+    """Length of a quantum in nanoseconds."""
 
 class PfairPD2(Pfair):
     """Proportionate fair scheduling by the PD2 rule. (until 1.2.0)"""

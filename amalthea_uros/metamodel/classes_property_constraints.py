@@ -16,15 +16,11 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes_sw import AbstractMemoryElement, Process, ProcessPrototype, Runnable
 
 class PropertyConstraintsModel(BaseObject):
-    """Sub-model of demands on the properties of cores and memories.
-
-    Attributes
-    ----------
-    allocation_constraints : Demands on the cores that execute something.
-    mapping_constraints : Demands on the memories that hold something.
-    """
+    """Sub-model of demands on the properties of cores and memories."""
     allocation_constraints: list[CoreAllocationConstraint] = containments("allocationConstraints")
+    """Demands on the cores that execute something."""
     mapping_constraints: list[MemoryMappingConstraint] = containments("mappingConstraints")
+    """Demands on the memories that hold something."""
 
 class CoreAllocationConstraint(BaseObject, abstract=True):
     """Demand on the properties of the cores to which something may be allocated."""
@@ -51,15 +47,11 @@ class AbstractElementMappingConstraint(MemoryMappingConstraint):
     abstract_element: AbstractMemoryElement | None = reference("abstractElement")
 
 class Classification(BaseObject, abstract=True):
-    """Condition on the classifiers that a core or memory has.
-
-    Attributes
-    ----------
-    condition : Whether the classifiers are required or excluded.
-    grouping : Whether all of the classifiers count or at least one of them.
-    """
+    """Condition on the classifiers that a core or memory has."""
     condition: CombinatorialCondition | None = attribute("condition")
+    """Whether the classifiers are required or excluded."""
     grouping: GroupingType | None = attribute("grouping")
+    """Whether all of the classifiers count or at least one of them."""
 
 class CoreClassification(Classification):
     """Condition on the classifiers of a core."""

@@ -23,39 +23,27 @@ class StimuliModel(BaseObject):
     clocks: list[Clock] = containments("clocks")
 
 class Stimulus(ReferableBaseObject, ITaggable, abstract=True):
-    """Source of activations; each occurrence activates all its processes at the same instant.
-
-    Attributes
-    ----------
-    set_mode_value_list : Values assigned to mode labels at each occurrence, after the condition and before the activations.
-    execution_condition : Tested at each occurrence; if it is false, nothing is set and nothing activated.
-    """
+    """Source of activations; each occurrence activates all its processes at the same instant."""
     set_mode_value_list: ModeValueList | None = containment("setModeValueList")
+    """Values assigned to mode labels at each occurrence, after the condition and before the activations."""
     execution_condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("executionCondition")
+    """Tested at each occurrence; if it is false, nothing is set and nothing activated."""
 
 class ModeValueList(BaseObject):
     """List of assignments to mode labels."""
     entries: list[ModeAssignment] = containments("entries")
 
 class ModeValueMapEntry(Element):
-    """Map entry from a mode label to a value.
-
-    Attributes
-    ----------
-    value : Name of a literal for an enum mode, integer as text for a numeric mode.
-    """
+    """Map entry from a mode label to a value."""
     key: ModeLabel | None = reference("key")
     value: str | None = attribute("value")
+    """Name of a literal for an enum mode, integer as text for a numeric mode."""
 
 class ModeValue(BaseObject, abstract=True):
-    """Mode label together with a value.
-
-    Attributes
-    ----------
-    value : Name of a literal for an enum mode, integer as text for a numeric mode.
-    """
+    """Mode label together with a value."""
     label: ModeLabel | None = reference("label")
     value: str | None = attribute("value")
+    """Name of a literal for an enum mode, integer as text for a numeric mode."""
 
 class ModeAssignment(ModeValue):
     """Assignment of a value to a mode label."""
@@ -73,27 +61,19 @@ class ModeConditionDisjunctionEntry(ISatisfiable, BaseObject, abstract=True):
     """Entry of a disjunction, a single condition on modes or a conjunction. (until 2.2.0)"""
 
 class ModeCondition(Condition, ModeConditionDisjunctionEntry, abstract=True):
-    """Comparison that involves mode labels.
-
-    Attributes
-    ----------
-    relation : Operator; enum modes can only be compared with EQUAL and NOT_EQUAL.
-    """
+    """Comparison that involves mode labels."""
     relation: RelationalOperator | None = attribute("relation")
+    """Operator; enum modes can only be compared with EQUAL and NOT_EQUAL."""
 
 class ModeValueCondition(ModeValue, ModeCondition):
     """Comparison of a mode label with a value."""
 
 class ModeLabelCondition(ModeCondition):
-    """Comparison of two mode labels, which should have the same mode.
-
-    Attributes
-    ----------
-    label1 : Left side of the comparison.
-    label2 : Right side of the comparison.
-    """
+    """Comparison of two mode labels, which should have the same mode."""
     label1: ModeLabel | None = reference("label1")
+    """Left side of the comparison."""
     label2: ModeLabel | None = reference("label2")
+    """Right side of the comparison."""
 
 class ConditionDisjunction(BaseObject):
     """Condition that is true if at least one of its entries is. (since 2.0.0)"""
@@ -104,178 +84,122 @@ class ConditionConjunction(BaseObject, ConditionDisjunctionEntry):
     entries: list[Condition] = containments("entries")
 
 class ChannelFillCondition(BaseObject, Condition):
-    """Comparison of the number of elements in a channel with a number. (since 2.0.0)
-
-    Attributes
-    ----------
-    fill_level : Number of elements, on the right side of the comparison.
-    """
+    """Comparison of the number of elements in a channel with a number. (since 2.0.0)"""
     channel: Channel | None = reference("channel")
     relation: RelationalOperator | None = attribute("relation")  # since 2.1.0
     fill_level: int | None = attribute("fillLevel")
+    """Number of elements, on the right side of the comparison."""
 
 class FixedPeriodic(Element, abstract=True):
-    """Stimulus with a fixed period.
-
-    Attributes
-    ----------
-    recurrence : Period, greater than zero.
-    offset : Time of the first period, zero or more; unset means zero.
-    """
+    """Stimulus with a fixed period."""
     recurrence: Time | None = containment("recurrence")
+    """Period, greater than zero."""
     offset: Time | None = containment("offset")
+    """Time of the first period, zero or more; unset means zero."""
 
 class PeriodicStimulus(Stimulus, FixedPeriodic):
-    """Periodic activation at offset + i * recurrence, shifted by jitter.
-
-    Attributes
-    ----------
-    jitter : Shift of each occurrence against the ideal grid, possibly negative; it does not accumulate.
-    min_distance : Shortest distance between two actual occurrences.
-    """
+    """Periodic activation at offset + i * recurrence, shifted by jitter."""
     jitter: ITimeDeviation | None = containment("jitter")
+    """Shift of each occurrence against the ideal grid, possibly negative; it does not accumulate."""
     min_distance: Time | None = containment("minDistance")
+    """Shortest distance between two actual occurrences."""
 
 class RelativePeriodicStimulus(Stimulus):
-    """Activation at a varying distance from the previous one, so that it drifts; also used for sporadic tasks.
-
-    Attributes
-    ----------
-    offset : Time of the first occurrence; unset means zero.
-    next_occurrence : Distance to the next occurrence; its lower bound is the minimum inter-arrival time.
-    """
+    """Activation at a varying distance from the previous one, so that it drifts; also used for sporadic tasks."""
     offset: Time | None = containment("offset")
+    """Time of the first occurrence; unset means zero."""
     next_occurrence: ITimeDeviation | None = containment("nextOccurrence")
+    """Distance to the next occurrence; its lower bound is the minimum inter-arrival time."""
 
 class VariableRateStimulus(Stimulus):
-    """Activation at a rate that varies, given by statistics or by a clock.
-
-    Attributes
-    ----------
-    step : Length of the time step to which the rate refers.
-    occurrences_per_step : Occurrences per step, not necessarily an integer.
-    max_increase_per_step : Largest rise of the rate from one step to the next; unset means no limit.
-    max_decrease_per_step : Largest fall of the rate from one step to the next; unset means no limit.
-    scenario : Clock that drives the occurrences; it replaces the statistical description.
-    """
+    """Activation at a rate that varies, given by statistics or by a clock."""
     step: Time | None = containment("step")
+    """Length of the time step to which the rate refers."""
     occurrences_per_step: IContinuousValueDeviation | None = containment("occurrencesPerStep")
+    """Occurrences per step, not necessarily an integer."""
     max_increase_per_step: float | None = attribute("maxIncreasePerStep")
+    """Largest rise of the rate from one step to the next; unset means no limit."""
     max_decrease_per_step: float | None = attribute("maxDecreasePerStep")
+    """Largest fall of the rate from one step to the next; unset means no limit."""
     scenario: Scenario | None = containment("scenario")
+    """Clock that drives the occurrences; it replaces the statistical description."""
 
 class Scenario(BaseObject):
-    """Way in which a clock drives a variable rate stimulus.
-
-    Attributes
-    ----------
-    clock : Frequency over time, whose integral is sampled.
-    sampling_offset : Clock cycles before sampling starts; with 0 (default) the first occurrence comes after one recurrence.
-    sampling_recurrence : Clock cycles between two occurrences (default 1).
-    """
+    """Way in which a clock drives a variable rate stimulus."""
     clock: Clock | None = reference("clock")
+    """Frequency over time, whose integral is sampled."""
     sampling_offset: float | None = attribute("samplingOffset")
+    """Clock cycles before sampling starts; with 0 (default) the first occurrence comes after one recurrence."""
     sampling_recurrence: float | None = attribute("samplingRecurrence")
+    """Clock cycles between two occurrences (default 1)."""
 
 class PeriodicSyntheticStimulus(Stimulus, FixedPeriodic):
-    """Activation by a list of times that is repeated with the period.
-
-    Attributes
-    ----------
-    occurrence_times : Times relative to the start of the period, zero or more.
-    """
+    """Activation by a list of times that is repeated with the period."""
     occurrence_times: list[Time] = containments("occurrenceTimes")
+    """Times relative to the start of the period, zero or more."""
 
 class CustomStimulus(Stimulus, IDescription):
     """Stimulus without predefined meaning, described by text and custom properties."""
 
 class SingleStimulus(Stimulus):
-    """Activation that happens once.
-
-    Attributes
-    ----------
-    occurrence : Time of the occurrence, counted from the start.
-    """
+    """Activation that happens once."""
     occurrence: Time | None = containment("occurrence")
+    """Time of the occurrence, counted from the start."""
 
 class InterProcessStimulus(Stimulus):
-    """Activation by inter-process triggers that other processes execute.
-
-    Attributes
-    ----------
-    counter : Lets only every n-th trigger through, in addition to the counter of the trigger.
-    """
+    """Activation by inter-process triggers that other processes execute."""
     counter: Counter | None = containment("counter")
+    """Lets only every n-th trigger through, in addition to the counter of the trigger."""
 
 class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
-    """Several activations in a burst that is repeated with the period.
-
-    Attributes
-    ----------
-    burst_length : Length of a burst; occurrences that would lie behind it are cut off.
-    occurrence_min_distance : Distance of the occurrences in a burst, the first of which is at its start.
-    occurrence_count : Occurrences per burst; the default is 1, but 0 until 1.1.0.
-    """
+    """Several activations in a burst that is repeated with the period."""
     burst_length: Time | None = containment("burstLength")
+    """Length of a burst; occurrences that would lie behind it are cut off."""
     occurrence_min_distance: Time | None = containment("occurrenceMinDistance")
+    """Distance of the occurrences in a burst, the first of which is at its start."""
     occurrence_count: int | None = attribute("occurrenceCount")
+    """Occurrences per burst; the default is 1, but 0 until 1.1.0."""
 
 class EventStimulus(Stimulus):
-    """Activation by events, such as a write access or a custom event.
-
-    Attributes
-    ----------
-    triggering_events : Events of which each one fires the stimulus; process events cannot do so.
-    counter : Lets only every n-th event through.
-    """
+    """Activation by events, such as a write access or a custom event."""
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
+    """Events of which each one fires the stimulus; process events cannot do so."""
     counter: Counter | None = containment("counter")
+    """Lets only every n-th event through."""
 
 class ArrivalCurveStimulus(Stimulus):
     """Activation described only by limits of how close and how far apart occurrences are."""
     entries: list[ArrivalCurveEntry] = containments("entries")
 
 class ArrivalCurveEntry(BaseObject):
-    """Limits of the time that a number of consecutive occurrences spans.
-
-    Attributes
-    ----------
-    number_of_occurrences : Number of consecutive occurrences; 2 limits the distance of neighbours.
-    lower_time_border : Shortest time from the first to the last of them; unset means no limit.
-    upper_time_border : Longest time from the first to the last of them; unset means no limit.
-    """
+    """Limits of the time that a number of consecutive occurrences spans."""
     number_of_occurrences: int | None = attribute("numberOfOccurrences")
+    """Number of consecutive occurrences; 2 limits the distance of neighbours."""
     lower_time_border: Time | None = containment("lowerTimeBorder")
+    """Shortest time from the first to the last of them; unset means no limit."""
     upper_time_border: Time | None = containment("upperTimeBorder")
+    """Longest time from the first to the last of them; unset means no limit."""
 
 class Clock(ReferableBaseObject, abstract=True):
     """Frequency that varies over time."""
 
 class ClockFunction(Clock):
-    """Clock whose frequency follows a sine or a triangle.
-
-    Attributes
-    ----------
-    peak_to_peak : Height of the curve from its minimum to its maximum.
-    x_offset : Time at which the rising curve passes the middle between minimum and maximum.
-    y_offset : Minimum of the curve, not its mean.
-    """
+    """Clock whose frequency follows a sine or a triangle."""
     curve_type: CurveType | None = attribute("curveType")
     period: Time | None = containment("period")
     peak_to_peak: Frequency | None = containment("peakToPeak")
+    """Height of the curve from its minimum to its maximum."""
     x_offset: Time | None = containment("xOffset")
+    """Time at which the rising curve passes the middle between minimum and maximum."""
     y_offset: Frequency | None = containment("yOffset")
+    """Minimum of the curve, not its mean."""
 
 class ClockStepList(Clock):
-    """Clock whose frequency changes in steps.
-
-    Attributes
-    ----------
-    entries : Steps; the frequency is 0 before the first one.
-    period : Time after which the steps repeat; without it the last frequency stays.
-    """
+    """Clock whose frequency changes in steps."""
     entries: list[ClockStep] = containments("entries")
+    """Steps; the frequency is 0 before the first one."""
     period: Time | None = containment("period")
+    """Time after which the steps repeat; without it the last frequency stays."""
 
 class ClockStep(BaseObject):
     """Frequency from a point in time on."""

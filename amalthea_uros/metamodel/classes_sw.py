@@ -28,13 +28,7 @@ if TYPE_CHECKING:
     from amalthea_uros.metamodel.classes_stimuli import ConditionDisjunction, InterProcessStimulus, ModeConditionDisjunction, Stimulus
 
 class SWModel(BaseObject):
-    """Sub-model of the software with its tasks, ISRs, runnables, labels and types.
-
-    Attributes
-    ----------
-    activations : Intended activations of runnables and prototypes; what really activates a process is a stimulus.
-    events : Operating system events, not those of the event model.
-    """
+    """Sub-model of the software with its tasks, ISRs, runnables, labels and types."""
     isrs: list[ISR] = containments("isrs")
     tasks: list[Task] = containments("tasks")
     runnables: list[Runnable] = containments("runnables")
@@ -43,7 +37,9 @@ class SWModel(BaseObject):
     process_prototypes: list[ProcessPrototype] = containments("processPrototypes")
     sections: list[Section] = containments("sections")
     activations: list[Activation] = containments("activations")
+    """Intended activations of runnables and prototypes; what really activates a process is a stimulus."""
     events: list[OsEvent] = containments("events")
+    """Operating system events, not those of the event model."""
     type_definitions: list[TypeDefinition] = containments("typeDefinitions")
     custom_entities: list[CustomEntity] = containments("customEntities")
     process_chains: list[ProcessChain] = containments("processChains")
@@ -51,58 +47,38 @@ class SWModel(BaseObject):
     mode_labels: list[ModeLabel] = containments("modeLabels")
 
 class AbstractMemoryElement(ReferableBaseObject, ITaggable, abstract=True):
-    """Base of everything that takes up memory and can be mapped into one.
-
-    Attributes
-    ----------
-    size : Memory that the element needs, greater than zero.
-    """
+    """Base of everything that takes up memory and can be mapped into one."""
     size: DataSize | None = containment("size")
+    """Memory that the element needs, greater than zero."""
 
 class AbstractProcess(AbstractMemoryElement, abstract=True):
     """Base of processes and of their prototypes."""
 
 class CustomEntity(AbstractMemoryElement, IDescription):
-    """Element of the software without predefined meaning.
-
-    Attributes
-    ----------
-    type_name : Free text that names the kind of the element.
-    """
+    """Element of the software without predefined meaning."""
     type_name: str | None = attribute("typeName")
+    """Free text that names the kind of the element."""
 
 class ProcessChain(ReferableBaseObject):
     """List of processes that belong together; it does not say how they trigger each other."""
     processes: list[Process] = references("processes")
 
 class IExecutable(Element, abstract=True):
-    """Object with a behaviour, that is a task, an ISR or a runnable. (since 1.2.0)
-
-    Attributes
-    ----------
-    local_labels : Mode labels that exist once per execution.
-    activity_graph : What is executed; a process or runnable without it does nothing.
-    """
+    """Object with a behaviour, that is a task, an ISR or a runnable. (since 1.2.0)"""
     local_labels: list[LocalModeLabel] = containments("localLabels")  # since 2.1.0
+    """Mode labels that exist once per execution."""
     activity_graph: ActivityGraph | None = containment("activityGraph")
+    """What is executed; a process or runnable without it does nothing."""
 
 class Process(AbstractProcess, IExecutable, abstract=True):
-    """Base of tasks and ISRs, the units of activation.
-
-    Attributes
-    ----------
-    stimuli : What activates the process; several stimuli activate it independently of each other.
-    """
+    """Base of tasks and ISRs, the units of activation."""
     stimuli: list[Stimulus] = references("stimuli")
+    """What activates the process; several stimuli activate it independently of each other."""
 
 class IActivityGraphItemContainer(Element, abstract=True):
-    """Object that holds items of an activity graph.
-
-    Attributes
-    ----------
-    items : Items in the order of execution.
-    """
+    """Object that holds items of an activity graph."""
     items: list[ActivityGraphItem] = containments("items")
+    """Items in the order of execution."""
 
 class ActivityGraph(BaseObject, IActivityGraphItemContainer):
     """Behaviour of a task, ISR or runnable as a sequence of items."""
@@ -111,15 +87,11 @@ class ActivityGraphItem(BaseObject, abstract=True):
     """Step of an activity graph."""
 
 class Switch(ActivityGraphItem):
-    """Branch on conditions. (since 2.0.0)
-
-    Attributes
-    ----------
-    entries : Branches in the order in which they are tested; the first satisfied one is executed.
-    default_entry : Branch for the case that no condition is satisfied; without it nothing happens.
-    """
+    """Branch on conditions. (since 2.0.0)"""
     entries: list[SwitchEntry] = containments("entries")
+    """Branches in the order in which they are tested; the first satisfied one is executed."""
     default_entry: SwitchDefault | None = containment("defaultEntry")
+    """Branch for the case that no condition is satisfied; without it nothing happens."""
 
 class SwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
     """Branch of a switch with its condition. (since 2.0.0)"""
@@ -133,156 +105,104 @@ class ProbabilitySwitch(ActivityGraphItem):
     entries: list[ProbabilitySwitchEntry] = containments("entries")
 
 class ProbabilitySwitchEntry(BaseObject, IActivityGraphItemContainer):
-    """Branch of a probability switch with its weight.
-
-    Attributes
-    ----------
-    probability : Weight, relative to the sum over all entries, which need not be 1.
-    """
+    """Branch of a probability switch with its weight."""
     probability: float | None = attribute("probability")
+    """Weight, relative to the sum over all entries, which need not be 1."""
 
 class WhileLoop(ActivityGraphItem, IActivityGraphItemContainer):
-    """Items that are repeated as long as a condition holds. (since 1.2.0)
-
-    Attributes
-    ----------
-    condition : Tested before each iteration; the loop ends only if the items change what it depends on.
-    """
+    """Items that are repeated as long as a condition holds. (since 1.2.0)"""
     condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("condition")
+    """Tested before each iteration; the loop ends only if the items change what it depends on."""
 
 class Counter(BaseObject):
-    """Prescaler that lets only every n-th execution take effect.
-
-    Attributes
-    ----------
-    prescaler : The n of every n-th time (default 1); counting goes on across the instances of a process.
-    offset : Number of the first effective execution, counted from 1; 0 (default) stands for the prescaler itself.
-    """
+    """Prescaler that lets only every n-th execution take effect."""
     prescaler: int | None = attribute("prescaler")
+    """The n of every n-th time (default 1); counting goes on across the instances of a process."""
     offset: int | None = attribute("offset")
+    """Number of the first effective execution, counted from 1; 0 (default) stands for the prescaler itself."""
 
 class WaitEvent(ActivityGraphItem):
-    """Waiting of the process for operating system events; it does not clear them.
-
-    Attributes
-    ----------
-    mask_type : Whether all events of the mask must be set or one is enough.
-    waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
-    counter : Waits only every n-th time.
-    """
+    """Waiting of the process for operating system events; it does not clear them."""
     event_mask: EventMask | None = containment("eventMask")
     mask_type: WaitEventType | None = attribute("maskType")
+    """Whether all events of the mask must be set or one is enough."""
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
+    """Active waiting polls and keeps the core, passive waiting releases it."""
     counter: Counter | None = containment("counter")
+    """Waits only every n-th time."""
 
 class SetEvent(ActivityGraphItem):
-    """Setting of operating system events.
-
-    Attributes
-    ----------
-    process : Process for which the events are set; unset means for every process.
-    counter : Sets the events only every n-th time.
-    """
+    """Setting of operating system events."""
     event_mask: EventMask | None = containment("eventMask")
     process: Process | None = reference("process")
+    """Process for which the events are set; unset means for every process."""
     counter: Counter | None = containment("counter")
+    """Sets the events only every n-th time."""
 
 class ClearEvent(ActivityGraphItem):
-    """Clearing of operating system events.
-
-    Attributes
-    ----------
-    counter : Clears the events only every n-th time.
-    """
+    """Clearing of operating system events."""
     event_mask: EventMask | None = containment("eventMask")
     counter: Counter | None = containment("counter")
+    """Clears the events only every n-th time."""
 
 class EventMask(BaseObject):
     """Set of operating system events."""
     events: list[OsEvent] = references("events")
 
 class OsEvent(ReferableBaseObject, ITaggable):
-    """Event of the operating system (OSEK) that a process can set, clear and wait for.
-
-    Attributes
-    ----------
-    communication_overhead_in_bit : Amount of data, in bit, that the event costs in communication.
-    """
+    """Event of the operating system (OSEK) that a process can set, clear and wait for."""
     communication_overhead_in_bit: int | None = attribute("communicationOverheadInBit")
+    """Amount of data, in bit, that the event costs in communication."""
 
 class InterProcessTrigger(ActivityGraphItem):
-    """Firing of an inter-process stimulus, which activates all its processes.
-
-    Attributes
-    ----------
-    counter : Fires only every n-th time, in addition to the counter of the stimulus.
-    """
+    """Firing of an inter-process stimulus, which activates all its processes."""
     stimulus: InterProcessStimulus | None = reference("stimulus")
     counter: Counter | None = containment("counter")
+    """Fires only every n-th time, in addition to the counter of the stimulus."""
 
 class EnforcedMigration(ActivityGraphItem):
-    """Move of the task to another scheduler.
-
-    Attributes
-    ----------
-    resource_owner : Scheduler to which the task moves.
-    """
+    """Move of the task to another scheduler."""
     resource_owner: TaskScheduler | None = reference("resourceOwner")
+    """Scheduler to which the task moves."""
 
 class SchedulePoint(ActivityGraphItem):
     """Explicit call of the scheduler, at which cooperative tasks can be preempted."""
 
 class TerminateProcess(ActivityGraphItem):
-    """Immediate end of the process; it is not needed at the end of the graph.
-
-    Attributes
-    ----------
-    counter : Terminates only every n-th time.
-    """
+    """Immediate end of the process; it is not needed at the end of the graph."""
     counter: Counter | None = containment("counter")
+    """Terminates only every n-th time."""
 
 class Task(Process):
-    """Process that the scheduler of an operating system dispatches.
-
-    Attributes
-    ----------
-    preemption : Whether other tasks may preempt it always, at schedule points only, or never; ISRs always may.
-    multiple_task_activation_limit : Most instances at a time; activations beyond are lost, not queued. Read the default 0 as 1.
-    """
+    """Process that the scheduler of an operating system dispatches."""
     preemption: Preemption | None = attribute("preemption")
+    """Whether other tasks may preempt it always, at schedule points only, or never; ISRs always may."""
     multiple_task_activation_limit: int | None = attribute("multipleTaskActivationLimit")
+    """Most instances at a time; activations beyond are lost, not queued. Read the default 0 as 1."""
 
 class ISR(Process):
-    """Interrupt service routine, a process that an interrupt controller dispatches.
-
-    Attributes
-    ----------
-    category : Category of OSEK, which decides the overhead that applies.
-    """
+    """Interrupt service routine, a process that an interrupt controller dispatches."""
     category: ISRCategory | None = attribute("category")
+    """Category of OSEK, which decides the overhead that applies."""
 
 class ProcessPrototype(AbstractProcess):
-    """Specification from which tasks are made; it never runs anything itself.
-
-    Attributes
-    ----------
-    preemption : Intended preemption of the process to be made.
-    first_runnable : Runnable that must come first.
-    last_runnable : Runnable that must come last.
-    access_precedence_spec : Precedences of runnables that follow from accesses to labels.
-    order_precedence_spec : Precedences of runnables that are stated directly.
-    chained_prototypes : Prototypes that are chained to this one.
-    activation : Intended activation, which triggers nothing.
-    runnable_calls : Runnables of the prototype, as calls.
-    """
+    """Specification from which tasks are made; it never runs anything itself."""
     preemption: Preemption | None = attribute("preemption")
+    """Intended preemption of the process to be made."""
     first_runnable: Runnable | None = reference("firstRunnable")
+    """Runnable that must come first."""
     last_runnable: Runnable | None = reference("lastRunnable")
+    """Runnable that must come last."""
     access_precedence_spec: list[AccessPrecedenceSpec] = containments("accessPrecedenceSpec")
+    """Precedences of runnables that follow from accesses to labels."""
     order_precedence_spec: list[OrderPrecedenceSpec] = containments("orderPrecedenceSpec")
+    """Precedences of runnables that are stated directly."""
     chained_prototypes: list[ChainedProcessPrototype] = containments("chainedPrototypes")
+    """Prototypes that are chained to this one."""
     activation: Activation | None = reference("activation")
+    """Intended activation, which triggers nothing."""
     runnable_calls: list[RunnableCall] = containments("runnableCalls")
+    """Runnables of the prototype, as calls."""
 
 class ChainedProcessPrototype(BaseObject):
     """Link to a prototype that is chained to another."""
@@ -291,15 +211,11 @@ class ChainedProcessPrototype(BaseObject):
     offset: int | None = attribute("offset")
 
 class GeneralPrecedence(BaseObject, abstract=True):
-    """Precedence between two runnables.
-
-    Attributes
-    ----------
-    origin : Runnable on the first side of the precedence.
-    target : Runnable on the second side of the precedence.
-    """
+    """Precedence between two runnables."""
     origin: Runnable | None = reference("origin")
+    """Runnable on the first side of the precedence."""
     target: Runnable | None = reference("target")
+    """Runnable on the second side of the precedence."""
 
 class AccessPrecedenceSpec(GeneralPrecedence):
     """Precedence between two runnables due to a label that both access."""
@@ -311,26 +227,18 @@ class OrderPrecedenceSpec(GeneralPrecedence):
     order_type: OrderType | None = attribute("orderType")
 
 class IDependsOn(Element, abstract=True):
-    """Object whose value is computed from other data.
-
-    Attributes
-    ----------
-    depends_on : Data from which the written label, the outgoing parameter or the argument is computed.
-    """
+    """Object whose value is computed from other data."""
     depends_on: DataDependency | None = containment("dependsOn")
+    """Data from which the written label, the outgoing parameter or the argument is computed."""
 
 class DataDependency(BaseObject):
-    """Data from which a value is computed.
-
-    Attributes
-    ----------
-    labels : Labels whose values are used.
-    parameters : Incoming parameters of the containing runnable whose values are used.
-    call_arguments : Results of calls in the containing runnable that are used.
-    """
+    """Data from which a value is computed."""
     labels: list[Label] = references("labels")
+    """Labels whose values are used."""
     parameters: list[RunnableParameter] = references("parameters")
+    """Incoming parameters of the containing runnable whose values are used."""
     call_arguments: list[CallArgument] = references("callArguments")
+    """Results of calls in the containing runnable that are used."""
 
 class RunnableParameter(ReferableBaseObject, IDependsOn):
     """Formal parameter of a runnable."""
@@ -338,63 +246,47 @@ class RunnableParameter(ReferableBaseObject, IDependsOn):
     data_type: TypeDefinition | None = reference("dataType")
 
 class Runnable(AbstractMemoryElement, IExecutable, INamespaceMember):
-    """Executable unit of software that runs in the context of the process that calls it.
-
-    Attributes
-    ----------
-    execution_condition : Tested when the runnable is called; if it is false, the call is skipped.
-    activations : Intended activations; they never trigger anything, only calls make a runnable run.
-    service : Whether it is a service, called by other runnables and not directly by a task.
-    section : Section into which the code is placed.
-    """
+    """Executable unit of software that runs in the context of the process that calls it."""
     execution_condition: ConditionDisjunction | ModeConditionDisjunction | None = containment("executionCondition")
+    """Tested when the runnable is called; if it is false, the call is skipped."""
     parameters: list[RunnableParameter] = containments("parameters")
     activations: list[Activation] = references("activations")
+    """Intended activations; they never trigger anything, only calls make a runnable run."""
     callback: bool | None = attribute("callback")
     service: bool | None = attribute("service")
+    """Whether it is a service, called by other runnables and not directly by a task."""
     asil_level: ASILType | None = attribute("asilLevel")
     section: Section | None = reference("section")
+    """Section into which the code is placed."""
 
 class Label(AbstractMemoryElement, IDisplayName, INamespaceMember):
-    """Data element that runnables read and write.
-
-    Attributes
-    ----------
-    data_type : Reference to a type from 3.0.0 on; until 2.2.0 the data type itself is contained.
-    b_volatile : Whether the label is volatile in the sense of the programming language.
-    data_stability : How the value is kept stable; it overrides the operating system and is overridden by the label access.
-    stability_level : Interval in which all reads see the same value.
-    section : Section into which the data is placed.
-    """
+    """Data element that runnables read and write."""
     data_type: TypeDefinition | DataType | None = containment_or_reference("dataType")
+    """Reference to a type from 3.0.0 on; until 2.2.0 the data type itself is contained."""
     constant: bool | None = attribute("constant")
     b_volatile: bool | None = attribute("bVolatile")
+    """Whether the label is volatile in the sense of the programming language."""
     data_stability: LabelDataStability | None = attribute("dataStability")
+    """How the value is kept stable; it overrides the operating system and is overridden by the label access."""
     stability_level: DataStabilityLevel | None = attribute("stabilityLevel")
+    """Interval in which all reads see the same value."""
     section: Section | None = reference("section")
+    """Section into which the data is placed."""
 
 class Channel(AbstractMemoryElement, IDisplayName, INamespaceMember):
-    """Queue of elements between runnables.
-
-    Attributes
-    ----------
-    element_type : Reference to a type from 3.0.0 on; until 2.2.0 the data type itself is contained.
-    default_elements : Number of elements at the start, at most maxElements.
-    max_elements : Capacity as a number of elements.
-    """
+    """Queue of elements between runnables."""
     element_type: TypeDefinition | DataType | None = containment_or_reference("elementType")
+    """Reference to a type from 3.0.0 on; until 2.2.0 the data type itself is contained."""
     default_elements: int | None = attribute("defaultElements")
+    """Number of elements at the start, at most maxElements."""
     max_elements: int | None = attribute("maxElements")
+    """Capacity as a number of elements."""
 
 class ModeLabel(AbstractMemoryElement, IDisplayName):
-    """Variable that holds a mode, on which branches and stimuli depend.
-
-    Attributes
-    ----------
-    initial_value : Name of a literal for an enum mode, integer as text for a numeric mode.
-    """
+    """Variable that holds a mode, on which branches and stimuli depend."""
     mode: Mode | None = reference("mode")
     initial_value: str | None = attribute("initialValue")
+    """Name of a literal for an enum mode, integer as text for a numeric mode."""
 
 class Section(ReferableBaseObject):
     """Named collection of labels and runnables that is placed in memory as a whole."""
@@ -404,34 +296,22 @@ class ComputationItem(ActivityGraphItem, abstract=True):
     """Step that costs execution time; a scheduler may hold such steps as its overhead."""
 
 class ExecutionNeed(ActivityGraphItem):
-    """Execution demand in units that hardware features convert to ticks.
-
-    Attributes
-    ----------
-    needs : Amounts by name of a hardware feature category; the amounts add up.
-    """
+    """Execution demand in units that hardware features convert to ticks."""
     needs: list[NeedEntry] = containments("needs")
+    """Amounts by name of a hardware feature category; the amounts add up."""
 
 class NeedEntry(Element):
-    """Map entry from the name of a hardware feature category to an amount.
-
-    Attributes
-    ----------
-    key : Name of a hardware feature category as plain text, which nothing keeps in step with the category.
-    """
+    """Map entry from the name of a hardware feature category to an amount."""
     key: str | None = attribute("key")
+    """Name of a hardware feature category as plain text, which nothing keeps in step with the category."""
     value: IDiscreteValueDeviation | None = containment("value")
 
 class Ticks(ComputationItem):
-    """Execution demand in processor cycles; divided by the frequency of the processing unit it is a time.
-
-    Attributes
-    ----------
-    default : Cycles on every processing unit whose definition has no extended entry.
-    extended : Cycles by definition of the processing unit; such an entry takes precedence over the default.
-    """
+    """Execution demand in processor cycles; divided by the frequency of the processing unit it is a time."""
     default: IDiscreteValueDeviation | None = containment("default")
+    """Cycles on every processing unit whose definition has no extended entry."""
     extended: list[TicksEntry] = containments("extended")
+    """Cycles by definition of the processing unit; such an entry takes precedence over the default."""
 
 class TicksEntry(Element):
     """Map entry from a processing unit definition to a number of cycles."""
@@ -439,86 +319,62 @@ class TicksEntry(Element):
     value: IDiscreteValueDeviation | None = containment("value")
 
 class ModeLabelAccess(ActivityGraphItem):
-    """Reading or changing of a mode label.
-
-    Attributes
-    ----------
-    access : Reading has no effect of its own; set uses the value, increment and decrement use the step.
-    value : Value to set, the name of a literal or an integer as text; other accesses ignore it.
-    step : Width of an increment or decrement (default 1); an enum mode stops at its first or last literal.
-    """
+    """Reading or changing of a mode label."""
     data: ModeLabel | None = reference("data")
     access: ModeLabelAccessEnum | None = attribute("access")
+    """Reading has no effect of its own; set uses the value, increment and decrement use the step."""
     value: str | None = attribute("value")
+    """Value to set, the name of a literal or an integer as text; other accesses ignore it."""
     step: int | None = attribute("step")
+    """Width of an increment or decrement (default 1); an enum mode stops at its first or last literal."""
 
 class LabelAccess(ComputationItem, ITaggable, IDependsOn):
-    """Reading or writing of a label.
-
-    Attributes
-    ----------
-    statistic : How many accesses this item stands for, and how many miss the cache.
-    transmission_policy : Cost of the transmission on top of the memory access.
-    data_stability : How the value is kept stable; inherited or undefined leaves it to the label.
-    implementation : Explicit access in place, implicit access with copies around the execution, or timed access as in LET.
-    """
+    """Reading or writing of a label."""
     data: Label | None = reference("data")
     access: LabelAccessEnum | None = attribute("access")
     statistic: LabelAccessStatistic | None = containment("statistic")
+    """How many accesses this item stands for, and how many miss the cache."""
     transmission_policy: TransmissionPolicy | None = containment("transmissionPolicy")
+    """Cost of the transmission on top of the memory access."""
     data_stability: LabelAccessDataStability | None = attribute("dataStability")
+    """How the value is kept stable; inherited or undefined leaves it to the label."""
     implementation: LabelAccessImplementation | None = attribute("implementation")
+    """Explicit access in place, implicit access with copies around the execution, or timed access as in LET."""
 
 class ChannelAccess(ActivityGraphItem, abstract=True):
-    """Sending to or receiving from a channel.
-
-    Attributes
-    ----------
-    elements : Number of elements; for receiving the largest number.
-    transmission_policy : Cost of the transmission; the size of all elements together is divided into chunks.
-    """
+    """Sending to or receiving from a channel."""
     data: Channel | None = reference("data")
     elements: int | None = attribute("elements")
+    """Number of elements; for receiving the largest number."""
     transmission_policy: TransmissionPolicy | None = containment("transmissionPolicy")
+    """Cost of the transmission; the size of all elements together is divided into chunks."""
 
 class ChannelSend(ChannelAccess):
     """Writing of elements to a channel."""
 
 class ChannelReceive(ChannelAccess):
-    """Reading of elements from a channel.
-
-    Attributes
-    ----------
-    receive_operation : FIFO starts at the oldest and LIFO at the newest element; take removes elements, read leaves them.
-    data_must_be_new : Whether only elements count that this runnable has not read before.
-    element_index : Position of the first element, counted from the end at which the operation starts.
-    lower_bound : Least number of elements to return, 0 to elements. The format defaults to 0; elements is meant by some.
-    """
+    """Reading of elements from a channel."""
     receive_operation: ReceiveOperation | None = attribute("receiveOperation")
+    """FIFO starts at the oldest and LIFO at the newest element; take removes elements, read leaves them."""
     data_must_be_new: bool | None = attribute("dataMustBeNew")
+    """Whether only elements count that this runnable has not read before."""
     element_index: int | None = attribute("elementIndex")
+    """Position of the first element, counted from the end at which the operation starts."""
     lower_bound: int | None = attribute("lowerBound")
+    """Least number of elements to return, 0 to elements. The format defaults to 0; elements is meant by some."""
 
 class SemaphoreAccess(ActivityGraphItem):
-    """Requesting or releasing of a semaphore.
-
-    Attributes
-    ----------
-    access : An exclusive request is granted only when nobody else holds the semaphore.
-    waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
-    """
+    """Requesting or releasing of a semaphore."""
     semaphore: Semaphore | None = reference("semaphore")
     access: SemaphoreAccessEnum | None = attribute("access")
+    """An exclusive request is granted only when nobody else holds the semaphore."""
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
+    """Active waiting polls and keeps the core, passive waiting releases it."""
 
 class SenderReceiverCommunication(ActivityGraphItem, abstract=True):
-    """Access to a label by sender-receiver communication.
-
-    Attributes
-    ----------
-    buffered : Whether the access works on a buffer.
-    """
+    """Access to a label by sender-receiver communication."""
     buffered: bool | None = attribute("buffered")
+    """Whether the access works on a buffer."""
     label: Label | None = reference("label")
     port: ComponentPort | None = reference("port")
 
@@ -526,13 +382,9 @@ class SenderReceiverRead(SenderReceiverCommunication):
     """Reading by sender-receiver communication."""
 
 class SenderReceiverWrite(SenderReceiverCommunication):
-    """Writing by sender-receiver communication.
-
-    Attributes
-    ----------
-    notified_runnables : Runnables that are told of the write.
-    """
+    """Writing by sender-receiver communication."""
     notified_runnables: list[Runnable] = references("notifiedRunnables")
+    """Runnables that are told of the write."""
 
 class ServerCall(ActivityGraphItem, abstract=True):
     """Call of a runnable by client-server communication."""
@@ -540,66 +392,42 @@ class ServerCall(ActivityGraphItem, abstract=True):
     port: ComponentPort | None = reference("port")
 
 class SynchronousServerCall(ServerCall):
-    """Server call that waits until the server runnable has finished.
-
-    Attributes
-    ----------
-    waiting_behaviour : Active waiting polls and keeps the core, passive waiting releases it.
-    """
+    """Server call that waits until the server runnable has finished."""
     waiting_behaviour: WaitingBehaviour | None = attribute("waitingBehaviour")
+    """Active waiting polls and keeps the core, passive waiting releases it."""
 
 class AsynchronousServerCall(ServerCall):
-    """Server call that goes on at once.
-
-    Attributes
-    ----------
-    result_runnable : Runnable that runs when the result has arrived.
-    """
+    """Server call that goes on at once."""
     result_runnable: Runnable | None = reference("resultRunnable")
+    """Runnable that runs when the result has arrived."""
 
 class GetResultServerCall(ServerCall):
-    """Fetching of the result of an asynchronous server call.
-
-    Attributes
-    ----------
-    blocking_type : Whether and how to wait for a result that is not there yet.
-    """
+    """Fetching of the result of an asynchronous server call."""
     blocking_type: BlockingType | None = attribute("blockingType")
+    """Whether and how to wait for a result that is not there yet."""
 
 class Group(ActivityGraphItem, INamed, IActivityGraphItemContainer):
-    """Items of an activity graph under a common name.
-
-    Attributes
-    ----------
-    ordered : Whether the items run in their order (true, default) or in any order.
-    interruptible : Whether the group may be preempted (true, default).
-    """
+    """Items of an activity graph under a common name."""
     ordered: bool | None = attribute("ordered")
+    """Whether the items run in their order (true, default) or in any order."""
     interruptible: bool | None = attribute("interruptible")  # since 1.2.0
+    """Whether the group may be preempted (true, default)."""
 
 class CallArgument(ReferableObject, IDependsOn):
-    """Actual value for a parameter of the called runnable.
-
-    Attributes
-    ----------
-    parameter : Parameter of the runnable that is called.
-    """
+    """Actual value for a parameter of the called runnable."""
     parameter: RunnableParameter | None = reference("parameter")
+    """Parameter of the runnable that is called."""
 
 class RunnableCall(ActivityGraphItem, ITaggable):
-    """Execution of a runnable in the context of the calling process; the caller continues after it.
-
-    Attributes
-    ----------
-    context : Values given to local mode labels of the called runnable.
-    counter : Calls the runnable only every n-th time.
-    statistic : How often the call is performed.
-    """
+    """Execution of a runnable in the context of the calling process; the caller continues after it."""
     runnable: Runnable | None = reference("runnable")
     arguments: list[CallArgument] = containments("arguments")
     context: list[LocalModeLabelAssignment] = containments("context")  # since 2.1.0
+    """Values given to local mode labels of the called runnable."""
     counter: Counter | None = containment("counter")
+    """Calls the runnable only every n-th time."""
     statistic: RunEntityCallStatistic | None = containment("statistic")
+    """How often the call is performed."""
 
 class CustomEventTrigger(ActivityGraphItem):
     """Raising of a custom event, which event stimuli can react to."""
@@ -620,38 +448,26 @@ class StructEntry(BaseObject, INamed, ITaggable):
     data_type: DataType | None = containment("dataType")
 
 class Array(CompoundType):
-    """Data type of several elements of the same type.
-
-    Attributes
-    ----------
-    number_elements : Number of elements.
-    """
+    """Data type of several elements of the same type."""
     number_elements: int | None = attribute("numberElements")
+    """Number of elements."""
     data_type: DataType | None = containment("dataType")
 
 class Pointer(CompoundType):
-    """Data type of a pointer.
-
-    Attributes
-    ----------
-    data_type : Type of the data pointed to.
-    """
+    """Data type of a pointer."""
     data_type: DataType | None = containment("dataType")
+    """Type of the data pointed to."""
 
 class TypeRef(BaseObject, DataType):
     """Data type that is defined elsewhere."""
     type_def: TypeDefinition | None = reference("typeDef")
 
 class Alias(BaseObject):
-    """Name of a base type in a certain environment.
-
-    Attributes
-    ----------
-    target : Environment in which the alias is used, as free text.
-    alias : Name of the type in that environment.
-    """
+    """Name of a base type in a certain environment."""
     target: str | None = attribute("target")
+    """Environment in which the alias is used, as free text."""
     alias: str | None = attribute("alias")
+    """Name of the type in that environment."""
 
 class TypeDefinition(ReferableBaseObject, INamespaceMember, abstract=True):
     """Named data type."""
@@ -669,91 +485,59 @@ class Activation(ReferableBaseObject, ITaggable, abstract=True):
     """Intended activation, a specification that never triggers anything; stimuli do that."""
 
 class PeriodicActivation(Activation):
-    """Intended activation with a period.
-
-    Attributes
-    ----------
-    recurrence : Period, greater than zero.
-    offset : Time of the first activation; unset means zero.
-    """
+    """Intended activation with a period."""
     min: Time | None = containment("min")
     max: Time | None = containment("max")
     recurrence: Time | None = containment("recurrence")
+    """Period, greater than zero."""
     offset: Time | None = containment("offset")
+    """Time of the first activation; unset means zero."""
 
 class VariableRateActivation(Activation, IDescription):
-    """Intended activation at a rate that varies.
-
-    Attributes
-    ----------
-    step : Length of the time step to which the rate refers.
-    occurrences_per_step : Occurrences per step, not necessarily an integer.
-    """
+    """Intended activation at a rate that varies."""
     step: Time | None = containment("step")
+    """Length of the time step to which the rate refers."""
     occurrences_per_step: IContinuousValueDeviation | None = containment("occurrencesPerStep")
+    """Occurrences per step, not necessarily an integer."""
 
 class SporadicActivation(Activation, IDescription):
-    """Intended activation at irregular times.
-
-    Attributes
-    ----------
-    occurrence : Time deviation that describes the irregular occurrence.
-    """
+    """Intended activation at irregular times."""
     occurrence: ITimeDeviation | None = containment("occurrence")
+    """Time deviation that describes the irregular occurrence."""
 
 class SingleActivation(Activation):
-    """Intended activation that happens once.
-
-    Attributes
-    ----------
-    min : Lower limit of its time, zero or more.
-    max : Upper limit of its time, zero or more.
-    """
+    """Intended activation that happens once."""
     min: Time | None = containment("min")
+    """Lower limit of its time, zero or more."""
     max: Time | None = containment("max")
+    """Upper limit of its time, zero or more."""
 
 class EventActivation(Activation):
-    """Intended activation by events.
-
-    Attributes
-    ----------
-    counter : Counts only every n-th event.
-    """
+    """Intended activation by events."""
     triggering_events: list[TriggerEvent] = references("triggeringEvents")
     counter: Counter | None = containment("counter")
+    """Counts only every n-th event."""
 
 class CustomActivation(Activation, IDescription):
     """Intended activation without predefined meaning."""
 
 class LabelAccessStatistic(BaseObject):
-    """How often a label is accessed and how often the cache is missed.
-
-    Attributes
-    ----------
-    value : Number of accesses.
-    cache_misses : Number of accesses that miss the cache.
-    """
+    """How often a label is accessed and how often the cache is missed."""
     value: NumericStatistic | None = containment("value")
+    """Number of accesses."""
     cache_misses: NumericStatistic | None = containment("cacheMisses")
+    """Number of accesses that miss the cache."""
 
 class RunEntityCallStatistic(BaseObject):
-    """How often a runnable is called.
-
-    Attributes
-    ----------
-    statistic : Number of calls.
-    """
+    """How often a runnable is called."""
     statistic: NumericStatistic | None = containment("statistic")
+    """Number of calls."""
 
 class LocalModeLabel(ReferableBaseObject):
-    """Mode label that exists once per execution of a task, ISR or runnable. (since 2.1.0)
-
-    Attributes
-    ----------
-    default_value : Value unless the caller or an assignment gives another, as the name of a literal or an integer.
-    """
+    """Mode label that exists once per execution of a task, ISR or runnable. (since 2.1.0)"""
     mode: Mode | None = reference("mode")
     default_value: str | None = attribute("defaultValue")
+    """Value unless the caller or an assignment gives another, as the name of a literal or an integer."""
 
 class LocalModeValue(Element, abstract=True):
     """Local mode label together with a source of a value. (since 2.1.0)"""
@@ -802,15 +586,11 @@ class ModeLabelAssignment(ActivityGraphItem):
     local_label: LocalModeLabel | None = reference("localLabel")
 
 class ModeSwitch(ActivityGraphItem):
-    """Branch on conditions on modes; Switch replaces it. (until 2.2.0)
-
-    Attributes
-    ----------
-    entries : Branches in the order in which they are tested; the first satisfied one is executed.
-    default_entry : Branch for the case that no condition is satisfied; without it nothing happens.
-    """
+    """Branch on conditions on modes; Switch replaces it. (until 2.2.0)"""
     entries: list[ModeSwitchEntry] = containments("entries")
+    """Branches in the order in which they are tested; the first satisfied one is executed."""
     default_entry: ModeSwitchDefault | None = containment("defaultEntry")
+    """Branch for the case that no condition is satisfied; without it nothing happens."""
 
 class ModeSwitchEntry(BaseObject, INamed, IActivityGraphItemContainer):
     """Branch of a mode switch with its condition. (until 2.2.0)"""

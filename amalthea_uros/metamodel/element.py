@@ -1,6 +1,6 @@
 """Base of the AMALTHEA classes.
 
-The generated classes declare one feature per line::
+The generated classes declare one feature per line, each with its documentation below it if the name does not say all::
 
     class Task(Process):
         preemption: Preemption | None = attribute("preemption")

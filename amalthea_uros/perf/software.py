@@ -12,6 +12,9 @@ from amalthea_uros.perf.conditions import Condition
 from amalthea_uros.perf.named import Brief, Named
 from amalthea_uros.units import DataSize
 
+#: The activation limit of what waits in any number: iterations that are due, and messages until a wire or a task is free.
+UNLIMITED = 1_000_000
+
 
 class Preemption(StrEnum):
     """When other tasks may preempt a task: always, at schedule points, or never."""

@@ -18,12 +18,12 @@ from amalthea_uros.compare.calibration.calibration import Calibration
 from amalthea_uros.compare.results import Comparison
 from amalthea_uros.design.campaign.simulations import CampaignResult
 from amalthea_uros.design.campaign.sweeps import SweepResult
-from amalthea_uros.design.improvements import Improvements
+from amalthea_uros.design.improvements import Improvement, Improvements
 from amalthea_uros.design.proposals import DesignProposal
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.measure.series import Measurement
 from amalthea_uros.report.fields import analysis, descriptions, explanation, measurement, models, search, simulation
-from amalthea_uros.report.fields.declaration import is_declared, json_of
+from amalthea_uros.report.fields.declaration import is_declared, json_of, list_of
 from amalthea_uros.services.analyze import AnalysisResult, Explanation
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.check import CheckResult
@@ -140,16 +140,8 @@ def _part(name: str, part: str, process: str | None, time: int, jobs: int | None
     return {"name": name, "part": part, "process": process, "jobs": jobs, "time_ps": time}
 
 
-def _improvements(result: Improvements) -> Iterator[Record]:
-    for each in result.found:
-        yield {
-            "change": each.change.text,
-            "before_ps": each.before,
-            "after_ps": each.after,
-            "claim": str(each.claim),
-            "is_safe": each.is_safe,
-            "drawbacks": "; ".join(f"{drawback.name}: {drawback.before} -> {drawback.after}" for drawback in each.drawbacks),
-        }
+def _drawbacks(result: Improvement) -> str:
+    return "; ".join(f"{each.name}: {each.before} -> {each.after}" for each in result.drawbacks)
 
 
 def _factors(result: Sensitivity) -> Iterator[Record]:
@@ -176,19 +168,6 @@ def _priorities(result: Proposal) -> Iterator[Record]:
         }
 
 
-def _method_rows(result: MethodBounds) -> Iterator[Record]:
-    for row in result.rows:
-        yield {
-            "method": row.method,
-            "object": row.object,
-            "quantity": row.quantity,
-            "value_ps": row.value,
-            "analyzed_ps": row.analyzed,
-            "claim": row.claim and str(row.claim),
-            "comparison": str(row.standing),
-        }
-
-
 #: Results with a row for each of their parts, and the parts: rows, or objects with rows of their own.
 _PARTS: Mapping[type, Callable[[Any], Iterable[Any]]] = {
     Analysis: lambda result: [result.processes],
@@ -196,7 +175,9 @@ _PARTS: Mapping[type, Callable[[Any], Iterable[Any]]] = {
     ExecutorResult: _handles,
     ChainResult: _latencies,
     Explanation: _explained_parts,
-    Improvements: _improvements,
+    Improvements: list_of(
+        "found", ("change", "change.text"), *("before_ps", "after_ps", "claim", "is_safe"), ("drawbacks", _drawbacks)
+    ),
     Sensitivity: _factors,
     Proposal: _priorities,
     Impact: lambda result: result.rows,
@@ -214,7 +195,9 @@ _PARTS: Mapping[type, Callable[[Any], Iterable[Any]]] = {
     MetaCheck: lambda result: result.findings,
     CheckResult: lambda result: json_of(result)["findings"],
     MigrationResult: lambda result: result.changes,
-    MethodBounds: _method_rows,
+    MethodBounds: list_of(
+        "rows", *("method", "object", "quantity", "value_ps", "analyzed_ps", "claim"), ("comparison", "standing")
+    ),
     DiffResult: lambda result: result.changes,
 }
 

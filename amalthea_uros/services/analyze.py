@@ -90,6 +90,19 @@ class AnalysisResult(Brief, Shown):
     missing: MissingValues | None = None
     answer: FirstAnswer | None = field(default=None, compare=False)
 
+    @classmethod
+    def of(cls, changed: ChangedSystem, analysis: Analysis, paths: tuple[Path, ...] = ()) -> AnalysisResult:
+        """The analysis of what was opened, with what it rests on."""
+        return cls(
+            paths=paths,
+            task_periods=changed.opened.task_periods,
+            changed=changed,
+            system=changed.system,
+            settings=changed.settings,
+            analysis=analysis,
+            findings=analysis.findings,
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class ChainDetail:
@@ -171,14 +184,8 @@ def analyze_files(
         from amalthea_uros.services.missing import missing_from
 
         missing = missing_from(changed, analysis)
-    return AnalysisResult(
-        paths=changed.opened.paths,
-        task_periods=changed.opened.task_periods,
-        changed=changed,
-        system=changed.system,
-        settings=changed.settings,
-        analysis=analysis,
-        findings=analysis.findings,
+    return replace(
+        AnalysisResult.of(changed, analysis, changed.opened.paths),
         sensitivity=sensitivity,
         proposals=proposals,
         all_methods=all_methods,
@@ -205,20 +212,12 @@ def analysis_result(analyzed: Analyzed) -> AnalysisResult:
     """The analysis with what it rests on; of something else than files, there are no paths."""
     if isinstance(analyzed, AnalysisResult):
         return analyzed
-    offered: tuple[Time, ...] = ()
-    changed = None
     if not isinstance(analyzed, Analysis):
         changed = open_changed(analyzed)
-        analyzed, offered = _analyzed(changed), changed.opened.task_periods
+        return AnalysisResult.of(changed, _analyzed(changed))
     context = analyzed.solution.context
     return AnalysisResult(
-        paths=(),
-        task_periods=offered,
-        changed=changed,
-        system=context.system,
-        settings=context.settings,
-        analysis=analyzed,
-        findings=analyzed.findings,
+        paths=(), system=context.system, settings=context.settings, analysis=analyzed, findings=analyzed.findings
     )
 
 

@@ -54,19 +54,19 @@ class FirstAnswer:
         return None if self.improvements is None else self.improvements.recommended
 
 
-def first_answer(result: AnalysisResult, *, with_changes: bool = True) -> FirstAnswer | None:
-    """The answer of an analysis; None if nothing was judged.
+def first_answer(result: AnalysisResult) -> FirstAnswer | None:
+    """The answer of an analysis; None if nothing was judged."""
+    item = decisive(result.analysis)
+    return None if item is None else answer_about(result, item)
+
+
+def answer_about(result: AnalysisResult, item: Decisive, *, with_changes: bool = True) -> FirstAnswer:
+    """The answer about one limit or core.
 
     Parameters
     ----------
     with_changes : whether changes are tried if a limit of a latency is not met
     """
-    item = decisive(result.analysis)
-    return None if item is None else answer_about(result, item, with_changes=with_changes)
-
-
-def answer_about(result: AnalysisResult, item: Decisive, *, with_changes: bool) -> FirstAnswer:
-    """The answer about one limit or core."""
     analysis = result.analysis
     if isinstance(item, ProcessorResult):
         shares = [(each.name, each.share) for each in analysis.processes if each.processor == item.name and each.share]

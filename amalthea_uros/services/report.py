@@ -31,7 +31,6 @@ from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND, SECOND, Du
 
 if TYPE_CHECKING:
     from amalthea_uros.findings.presentation import Presentation
-    from amalthea_uros.services.changed import ChangedSystem
     from amalthea_uros.uros.assemble import Assembly
 
 #: How long a run may be if nobody says it, the longest first.
@@ -54,8 +53,7 @@ class ReportContent:
     ----------
     title : by default, the names of the files
     date : as the caller states it; "" for none, so that the same input gives the same report
-    changed : what the report is about
-    system, settings : with the changes
+    system : with the changes
     before : the analysis without the changes; None if there are none
     differences : what the changes did
     simulation : None if it was not wanted; its options say the duration
@@ -68,9 +66,7 @@ class ReportContent:
 
     title: str
     date: str = ""
-    changed: ChangedSystem | None = None
     system: System
-    settings: Settings
     analysis: Analysis
     before: Analysis | None = None
     differences: tuple[Difference, ...] = ()
@@ -134,9 +130,7 @@ def compile_report(
     return ReportContent(
         title=title or _name(opened),
         date=date,
-        changed=changed,
         system=system,
-        settings=changed.settings,
         analysis=analysis,
         before=before,
         differences=tuple(each for each in changed.differences if not each.is_consequence),
@@ -144,21 +138,8 @@ def compile_report(
         is_duration_chosen=duration is None,
         check=None if model is None else check_input(model, next(iter(_files(opened)), Path())),
         findings=tuple(dict.fromkeys(unsuppressed(findings))),
-        answer=first_answer(_analyzed(changed, analysis)),
+        answer=first_answer(AnalysisResult.of(changed, analysis)),
         assembly=None if opened.assembly is None else with_analysed_storage(opened.assembly, before or analysis),
-    )
-
-
-def _analyzed(changed: ChangedSystem, analysis: Analysis) -> AnalysisResult:
-    """The analysis as a result, of which changes are tried."""
-    return AnalysisResult(
-        paths=(),
-        task_periods=changed.opened.task_periods,
-        changed=changed,
-        system=changed.system,
-        settings=changed.settings,
-        analysis=analysis,
-        findings=(),
     )
 
 

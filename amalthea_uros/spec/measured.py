@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple, TypeAlias
 
+from amalthea_uros._internal.plural import enumerated
 from amalthea_uros._internal.resources import MEASURED, known_measured
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
@@ -147,8 +148,7 @@ def _added(section: DescriptionSection, nearer: Sequence[DescriptionSection]) ->
 
 
 def _sentence(profile: MeasuredProfile, part: str, keys: Sequence[str]) -> str:
-    *others, last = map(repr, keys)
-    what = f"{', '.join(others)} and {last}" if others else last
+    what = enumerated([*map(repr, keys)])
     are = "is that" if len(keys) == 1 else "are those"
     how = _WITH if part == "transport" and profile.basis != "fitted" else _PHRASES[profile.basis]
     return f"{what} of {_PARTS[part]} {are} of profile {profile.profile!r}, {how} {profile.measured}"

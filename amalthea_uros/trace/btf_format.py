@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
 
@@ -16,20 +15,18 @@ import numpy as np
 
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.files import TracePlace, TraceProblems, opened_text
 from amalthea_uros.trace.reading import (
     BLOCK,
     MAX,
     EntityIndex,
     LineReader,
-    NumberedTable,
     Pattern,
     Row,
     note_of,
-    numbered_table,
+    table_of,
 )
-from amalthea_uros.trace.sinks import Encoder, WriteOptions
+from amalthea_uros.trace.sinks import Encoder
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.trace.vocabulary import EVENTS, OS_EVENTS, SOURCES, TYPES, WORDS
 
@@ -183,15 +180,15 @@ class BtfReader(LineReader):
         self._header = BtfHeader(self._index, self._problems)
         self._numbers: dict[tuple[str, str, str, str], int] = {}
 
-    def numbered(self) -> Iterator[NumberedTable]:
-        """The events, with the number of the line of each."""
+    def __iter__(self) -> Iterator[EventTable]:
+        """The events, in consecutive tables."""
         with opened_text(self._path, self._problems) as stream:
             line = 1
             while lines := list(islice(stream, BLOCK)):
                 rows = self._rows(lines, line)
                 line += len(lines)
                 if rows:
-                    yield numbered_table(rows, self._patterns, self._index, self._header.scale)
+                    yield table_of(rows, self._patterns, self._index, self._header.scale)
 
     def _rows(self, lines: Sequence[str], start: int) -> list[Row]:
         """The rows of some lines, of which the first one has a number; what is unusual is left to other methods."""
@@ -204,7 +201,7 @@ class BtfReader(LineReader):
                 time, job, instance = int(time_field), int(job_field or 0), int(instance_field or 0)
             except ValueError:
                 if not self._read_other(line, text) and self._patterns:
-                    rows.append(self._gap_row(last, line))
+                    rows.append(self._gap_row(last))
                 limit = MAX // self._header.scale
                 continue
             pattern = numbers.get((source, kind, target, event))
@@ -212,10 +209,10 @@ class BtfReader(LineReader):
                 pattern = self._new_pattern(source, kind, target, event, TracePlace(line, None, text.rstrip(BLANKS)))
             if not (last <= time <= limit and -1 <= job <= MAX and -1 <= instance <= MAX):
                 self._report_range(time, last, TracePlace(line, 1, text.rstrip(BLANKS)))
-                rows.append(self._gap_row(last, line))
+                rows.append(self._gap_row(last))
             elif pattern != _LEFT_OUT:
                 last = time
-                rows.append((time, pattern, job, instance, self._note(notes[0], pattern) if notes else NO_NOTE, line))
+                rows.append((time, pattern, job, instance, self._note(notes[0], pattern) if notes else NO_NOTE))
         self._last = last
         return rows
 
@@ -288,66 +285,36 @@ def _is_number(field: str) -> bool:
     return True
 
 
-# Writing: with names or with numbers for entities; events of chains are left out.
+# Writing: events of chains are left out.
 
 
-#: The types in files, at the places of their numbers.
-_TYPES: list[EntityKind] = [kind for kind in EntityKind if kind is not EntityKind.CHAIN]
 _KNOWN = np.array(sorted(WORDS))
 _ENDINGS = {int(kind): f",{word}\n" for kind, word in WORDS.items()}
 
 
 class BtfEncoder(Encoder):
-    """Makes the lines of a BTF file.
+    """Makes the lines of a BTF file, without a date, so that equal traces are equal files."""
 
-    Raises
-    ------
-    InvalidArgumentError : there is no such unit of time.
-    """
-
-    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
-        if options.timescale not in TIMESCALES:
-            raise InvalidArgumentError(
-                f"BTF has no timescale {options.timescale!r}; expected one of {', '.join(TIMESCALES)}, e.g. ns"
-            )
-        super().__init__(entities, options)
-        self._scale = TIMESCALES[options.timescale]
-        self._fields: list[str] = []
+    def __init__(self, entities: Sequence[Entity]) -> None:
+        super().__init__(entities)
+        self._names: list[str] = []
         self._targets: list[str] = []
 
     def begin(self) -> bytes:
         """The header."""
-        lines = ["#version 2.3.0", f"#creator amuros {__version__}"]
-        if self._options.creation_date is not None:
-            lines.append(f"#creationDate {_utc(self._options.creation_date)}")
-        lines.append(f"#timescale {self._options.timescale}")
-        if self._options.numeric:
-            lines += [f"#typeMapping {number} {kind}" for number, kind in enumerate(_TYPES)]
-        return _joined(lines + self._mappings_of_new_entities())
+        lines = ("#version 2.3.0", f"#creator amuros {__version__}", "#timescale ps", *self._types_of_new_entities())
+        return _joined(lines)
 
     def encode(self, table: EventTable) -> bytes:
-        """The lines of some events, after the names and types of new entities.
-
-        Raises
-        ------
-        InvalidArgumentError : a time is not a whole number of the unit.
-        """
-        mappings = self._mappings_of_new_entities()
+        """The lines of some events, after the types of new entities."""
+        types = self._types_of_new_entities()
         is_known = np.isin(table.kind, _KNOWN)
         if not is_known.all():
             table = table.where(is_known)
-        times = table.time
-        if self._scale > 1:
-            times, rest = np.divmod(times, self._scale)
-            if rest.any():
-                raise InvalidArgumentError(
-                    f"the time {table.time[rest > 0][0]} ps is not a whole number of {self._options.timescale}; "
-                    "use a finer timescale, e.g. ps"
-                )
-        fields, targets = self._fields, self._targets
+        names, targets = self._names, self._targets
         rows = zip(
-            times.tolist(),
-            [fields[source] for source in table.source.tolist()],
+            table.time.tolist(),
+            [names[source] for source in table.source.tolist()],
             table.source_instance.tolist(),
             [targets[target] for target in table.target.tolist()],
             table.target_instance.tolist(),
@@ -357,22 +324,16 @@ class BtfEncoder(Encoder):
         lines = "".join(
             [f"{time},{source},{job},{target}{number}{ending}" for time, source, job, target, number, ending in rows]
         )
-        return _joined(mappings) + lines.encode()
+        return _joined(types) + lines.encode()
 
-    def _mappings_of_new_entities(self) -> list[str]:
+    def _types_of_new_entities(self) -> list[str]:
         lines = []
-        for number in range(len(self._fields), len(self._entities)):
-            entity = self._entities[number]
+        for entity in self._entities[len(self._names) :]:
             name = escape(entity.name)
-            field = str(number) if self._options.numeric else name
-            is_known = entity.kind in _TYPES
-            kind = str(_TYPES.index(entity.kind)) if self._options.numeric and is_known else entity.kind.value
-            if is_known and self._options.numeric:
-                lines.append(f"#entityMapping {number} {name}")
-            if is_known:
-                lines.append(f"#entityTypeMapping {kind} {field}")
-            self._fields.append(field)
-            self._targets.append(f"{kind},{field},")
+            if entity.kind is not EntityKind.CHAIN:
+                lines.append(f"#entityTypeMapping {entity.kind} {name}")
+            self._names.append(name)
+            self._targets.append(f"{entity.kind},{name},")
         return lines
 
     def _endings(self, table: EventTable) -> list[str]:
@@ -382,13 +343,9 @@ class BtfEncoder(Encoder):
         for row in np.flatnonzero(table.note != NO_NOTE).tolist():
             note = int(table.note[row])
             # The standard wants the owner of an OS event there.
-            text = self._fields[note] if kinds[row] in OS_EVENTS else str(note)
+            text = self._names[note] if kinds[row] in OS_EVENTS else str(note)
             endings[row] = f"{endings[row][:-1]},{text}\n"
         return endings
-
-
-def _utc(date: datetime) -> str:
-    return date.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def _joined(lines: Sequence[str]) -> bytes:

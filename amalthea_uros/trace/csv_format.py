@@ -19,8 +19,8 @@ from pathlib import Path
 from amalthea_uros._internal.csv_cells import original_text, safe_cell
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.files import TracePlace, opened_text
-from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, NumberedTable, Row, note_of, numbered_table
-from amalthea_uros.trace.sinks import Encoder, WriteOptions
+from amalthea_uros.trace.reading import BLOCK, MAX, LineReader, Row, note_of, table_of
+from amalthea_uros.trace.sinks import Encoder
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 
 HEADER = ["time_ps", "event", "source_kind", "source", "source_instance", "target_kind", "target", "target_instance", "note"]
@@ -39,16 +39,16 @@ class CsvReader(LineReader):
         super().__init__(path)
         self._numbers: dict[tuple[str, ...], int] = {}
 
-    def numbered(self) -> Iterator[NumberedTable]:
-        """The events, with the number of the line of each."""
+    def __iter__(self) -> Iterator[EventTable]:
+        """The events, in consecutive tables."""
         with opened_text(self._path, self._problems) as stream:
             lines = self._lines(stream)
             if next(lines, (0, None))[1] != HEADER:
                 message = f"the first line is not the header of a trace: {','.join(HEADER)}"
                 self._problems.add("TRC005", Severity.WARNING, message, TracePlace(1, 1), "Check that this is a trace.")
-            rows = (self._row(line, fields) or self._gap_row(self._last, line) for line, fields in lines)
+            rows = (self._row(line, fields) or self._gap_row(self._last) for line, fields in lines)
             while block := list(islice(rows, BLOCK)):
-                yield numbered_table(block, self._patterns, self._index, scale=1)
+                yield table_of(block, self._patterns, self._index)
 
     def _lines(self, stream: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
         """The lines with their numbers; those that are not CSV, such as ones with a carriage return in a name, are empty."""
@@ -89,7 +89,7 @@ class CsvReader(LineReader):
             return None
         self._last = time
         note = note_of(note_field, self._patterns[pattern][0], self._index, original_text(note_field))
-        return time, pattern, job, instance, note, line
+        return time, pattern, job, instance, note
 
     def _new_pattern(self, event: str, source_kind: str, source: str, target_kind: str, target: str) -> int:
         kind, of_source, of_target = EVENT_NAMES[event], _KINDS[source_kind], _KINDS[target_kind]
@@ -105,10 +105,10 @@ _NAMES = {int(kind): name for name, kind in EVENT_NAMES.items()}
 
 
 class CsvEncoder(Encoder):
-    """Makes the lines of a CSV file; it has no options."""
+    """Makes the lines of a CSV file."""
 
-    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
-        super().__init__(entities, options)
+    def __init__(self, entities: Sequence[Entity]) -> None:
+        super().__init__(entities)
         self._fields: list[str] = []
 
     def begin(self) -> bytes:

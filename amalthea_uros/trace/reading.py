@@ -9,7 +9,6 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.trace.files import TracePlace, TraceProblems
 from amalthea_uros.trace.table import NO_NOTE, Entity, EntityKind, EventKind, EventTable
@@ -74,27 +73,24 @@ BLOCK = 1 << 13
 
 #: What the lines with the same words have in common: kind of event, source, target.
 Pattern: TypeAlias = tuple[EventKind, int, int]
-#: Time, number of the pattern, source instance, target instance, note, line.
-Row: TypeAlias = tuple[int, int, int, int, int, int]
-NumberedTable: TypeAlias = "tuple[EventTable, Numbers]"
+#: Time, number of the pattern, source instance, target instance, note.
+Row: TypeAlias = Sequence[int]
 
 
-def numbered_table(rows: Sequence[Row], patterns: Sequence[Pattern], index: EntityIndex, scale: int) -> NumberedTable:
-    """The table of some rows, and the number of the line of each.
+def table_of(rows: Sequence[Row], patterns: Sequence[Pattern], index: EntityIndex, scale: int = 1) -> EventTable:
+    """The table of some rows.
 
     Parameters
     ----------
     scale : picoseconds of the unit of time
     """
-    time, pattern, source_instance, target_instance, note, line = np.array(rows, np.int64).T.copy()
+    time, pattern, source_instance, target_instance, note = np.array(rows, np.int64).T.copy()
     kind, source, target = np.array(patterns, np.int32)[pattern].T.copy()
     # Before BTF 2.2, what has no instances has the number -1, and so has the simulation as source of a stimulus.
     target_instance = np.maximum(target_instance, 0)
     source_instance = np.where(source_instance < 0, np.where(source == target, target_instance, 0), source_instance)
-    table = EventTable(
-        index.entities, time * scale, kind.astype(np.int16), source, source_instance, target, target_instance, note
-    )
-    return table, line
+    kinds = kind.astype(np.int16)
+    return EventTable(index.entities, time * scale, kinds, source, source_instance, target, target_instance, note)
 
 
 def note_of(text: str, kind: EventKind, index: EntityIndex, name: str) -> int:
@@ -135,13 +131,9 @@ class TraceReader(ABC):
         """The problems met so far; everything else has been read."""
         return self._problems.findings
 
+    @abstractmethod
     def __iter__(self) -> Iterator[EventTable]:
         """The events, in consecutive tables."""
-        return (table for table, _ in self.numbered())
-
-    @abstractmethod
-    def numbered(self) -> Iterator[NumberedTable]:
-        """The events, with the number of the line of each."""
 
 
 class LineReader(TraceReader):
@@ -153,13 +145,13 @@ class LineReader(TraceReader):
         self._last = 0
         self._gap: int | None = None
 
-    def _gap_row(self, time: int, line: int) -> Row:
+    def _gap_row(self, time: int) -> Row:
         """The place of a line that cannot be used: nobody knows which event is missing."""
         if self._gap is None:
             recorder = self._index.index(EntityKind.SCHEDULER, "recorder")
             self._gap = len(self._patterns)
             self._patterns.append((EventKind.GAP, recorder, recorder))
-        return time, self._gap, 0, 0, NO_NOTE, line
+        return time, self._gap, 0, 0, NO_NOTE
 
 
 # The rows of a trace that a reader makes, and the order of their times.
@@ -182,7 +174,6 @@ class EventRows:
         self.index = index
         self.time = 0
         self._problems = problems
-        self._line = 0
         self._origin: int | None = None
         self._patterns: list[Pattern] = []
         self._numbers: dict[Pattern, int] = {}
@@ -193,13 +184,12 @@ class EventRows:
     def __len__(self) -> int:
         return len(self._rows)
 
-    def move_to(self, time: int, line: int, place: TracePlace) -> bool:
+    def move_to(self, time: int, place: TracePlace) -> bool:
         """Whether events can be at a time, which is then that of the next ones; if not, that is a problem.
 
         Parameters
         ----------
         time : picoseconds of the recording
-        line : number of the line or of the event in the file
         """
         if self._origin is None:
             self._origin = 0 if 0 <= time <= _LONGEST_UPTIME else time
@@ -209,14 +199,14 @@ class EventRows:
             message = "the time is less than that of an event before" if is_earlier else "the time is too large"
             self._problems.add("TRC004", Severity.ERROR, f"{message}; this event is ignored", place)
             return False
-        self.time, self._line = time, line
+        self.time = time
         return True
 
     def add(
         self, kind: EventKind, source: int, source_instance: int, target: int, instance: int, note: int = NO_NOTE
     ) -> list[int]:
         """Add an event at the present time; its row can be changed until it is taken."""
-        row = [self.time, self._pattern(kind, source, target), source_instance, instance, note, self._line]
+        row = [self.time, self._pattern(kind, source, target), source_instance, instance, note]
         self._rows.append(row)
         self._last = row
         return row
@@ -244,10 +234,10 @@ class EventRows:
         numbers = set(map(id, rows))
         return next((number for number, row in enumerate(self._rows) if id(row) in numbers), len(self._rows))
 
-    def take(self, number: int) -> NumberedTable | None:
+    def take(self, number: int) -> EventTable | None:
         """The first events, which are no longer kept; None if there are none."""
         rows, self._rows = self._rows[:number], self._rows[number:]
-        return numbered_table([tuple(row) for row in rows], self._patterns, self.index, scale=1) if rows else None  # type: ignore[misc]
+        return table_of(rows, self._patterns, self.index) if rows else None
 
     def _pattern(self, kind: EventKind, source: int, target: int) -> int:
         pattern = kind, source, target

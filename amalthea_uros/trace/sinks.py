@@ -6,14 +6,12 @@ import gzip
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from datetime import datetime
 from importlib import import_module
 from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self, cast
 
 from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable, replacing, write_bytes
-from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.trace.table import Entity, EventTable, concatenate
@@ -35,22 +33,6 @@ WRITERS = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WriteOptions:
-    """How a trace is written; only BTF has choices.
-
-    Attributes
-    ----------
-    timescale : the unit of time of a BTF file: ps, ns, us, ms or s
-    numeric : whether BTF events refer to types and entities by number instead of name
-    creation_date : of a BTF file; None: it has none, so that equal traces are equal files
-    """
-
-    timescale: str = "ps"
-    numeric: bool = False
-    creation_date: datetime | None = None
-
-
 class Encoder(ABC):
     """Makes the bytes of a format: those at the beginning, those for each table, and those at the end.
 
@@ -59,8 +41,8 @@ class Encoder(ABC):
     entities : those of the tables; more may be appended to the sequence while the trace is written
     """
 
-    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
-        self._entities, self._options = entities, options
+    def __init__(self, entities: Sequence[Entity]) -> None:
+        self._entities = entities
 
     def begin(self) -> bytes:
         """The bytes before all events; nothing where a format has no header."""
@@ -100,9 +82,7 @@ class TraceSink(ABC):
             self.close()
 
 
-def open_sink(
-    target: Path | BinaryIO, entities: Sequence[Entity], options: WriteOptions | None = None, suffix: str | None = None
-) -> TraceSink:
+def open_sink(target: Path | BinaryIO, entities: Sequence[Entity], suffix: str | None = None) -> TraceSink:
     """A sink that writes a trace in the format that the end of the file name stands for.
 
     Parameters
@@ -119,11 +99,11 @@ def open_sink(
     if suffix is None and target == STANDARD_OUTPUT:
         suffix = ".btf"
     name = (suffix if suffix is not None else target.name if isinstance(target, Path) else "").lower()
-    encoder = _encoder(name.removesuffix(".gz"), name)(entities, options or WriteOptions())
+    encoder = _encoder(name.removesuffix(".gz"), name)(entities)
     return _EncodingSink(target, encoder, is_compressed=name.endswith(".gz"))
 
 
-def _encoder(name: str, given: str) -> Callable[[Sequence[Entity], WriteOptions], Encoder]:
+def _encoder(name: str, given: str) -> Callable[[Sequence[Entity]], Encoder]:
     found = next((writer for suffix, writer in WRITERS.items() if name.endswith(suffix)), None)
     if found is None:
         known = ", ".join(WRITERS)
@@ -132,9 +112,7 @@ def _encoder(name: str, given: str) -> Callable[[Sequence[Entity], WriteOptions]
             "e.g. run.btf.gz"
         )
     module, encoder = found
-    return cast(
-        "Callable[[Sequence[Entity], WriteOptions], Encoder]", getattr(import_module(f"amalthea_uros.trace.{module}"), encoder)
-    )
+    return cast("Callable[[Sequence[Entity]], Encoder]", getattr(import_module(f"amalthea_uros.trace.{module}"), encoder))
 
 
 class _EncodingSink(TraceSink):

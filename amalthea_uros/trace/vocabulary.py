@@ -59,12 +59,13 @@ OS_EVENTS = frozenset(EVENTS[EntityKind.OS_EVENT].values())
 Chart: TypeAlias = Mapping[EventKind, tuple[frozenset[str], str]]
 
 
-def _chart(rows: Mapping[EventKind, tuple[str, str]]) -> Chart:
+def chart(rows: Mapping[EventKind, tuple[str, str]]) -> Chart:
+    """A state chart: the states are words with blanks between them."""
     return {kind: (frozenset(before.split()), after) for kind, (before, after) in rows.items()}
 
 
 #: Jobs of tasks and ISRs (figure 2-4 and tables 2-10 to 2-24 of the standard).
-PROCESS = _chart(
+PROCESS = chart(
     {
         EventKind.ACTIVATE: ("terminated", "active"),
         EventKind.ACTIVATION_LOST: ("terminated", "terminated"),
@@ -85,43 +86,11 @@ PROCESS = _chart(
 #: The states of a process in which it is on a core.
 ON_CORE = frozenset({"running", "polling"})
 
-#: Executions of runnables (section 2.3.3).
-RUNNABLE = _chart(
-    {
-        EventKind.RUNNABLE_START: ("terminated", "running"),
-        EventKind.RUNNABLE_SUSPEND: ("running", "suspended"),
-        EventKind.RUNNABLE_RESUME: ("suspended", "running"),
-        EventKind.RUNNABLE_TERMINATE: ("running", "terminated"),
-    }
+_STATES_OF_SEMAPHORES = (
+    EventKind.LOCK,
+    EventKind.UNLOCK,
+    *(kind for kind in EventKind if EventKind.USED <= kind <= EventKind.FREE),
 )
-
-#: Semaphores (section 2.3.7); those of spinlocks are a part of it (section 2.3.8).
-SEMAPHORE = _chart(
-    {
-        EventKind.USED: ("free used", "used"),
-        EventKind.LOCK: ("free", "full"),
-        EventKind.LOCK_USED: ("used", "full"),
-        EventKind.OVERFULL: ("full overfull", "overfull"),
-        EventKind.FULL: ("overfull", "full"),
-        EventKind.UNLOCK_FULL: ("full", "used"),
-        EventKind.FREE: ("used", "free"),
-        EventKind.UNLOCK: ("full", "free"),
-    }
-)
-
-#: What a job does with a semaphore: the order of the events that processes cause (section 2.3.7).
-ACCESS = _chart(
-    {
-        EventKind.REQUEST_SEMAPHORE: ("idle", "requested"),
-        EventKind.INCREMENT: ("requested", "requested"),
-        EventKind.QUEUED: ("requested", "queued"),
-        EventKind.WAITING: ("requested queued", "waiting"),
-        EventKind.ASSIGNED: ("requested queued waiting", "assigned"),
-        EventKind.RELEASED: ("assigned", "idle"),
-        EventKind.DECREMENT: ("idle", "idle"),
-    }
-)
-
 _BY_STIMULUS = (EntityKind.STIMULUS, *PROCESSES)
 _BY_PROCESS_OR_STIMULUS = (*PROCESSES, EntityKind.STIMULUS)
 
@@ -137,7 +106,7 @@ SOURCES: dict[EventKind, tuple[EntityKind, ...]] = {
     EventKind.WRITE: _BY_PROCESS_OR_STIMULUS,
     **dict.fromkeys(EVENTS[EntityKind.SEMAPHORE].values(), PROCESSES),
     # It causes the changes of its state itself.
-    **dict.fromkeys(SEMAPHORE, (*PROCESSES, EntityKind.SEMAPHORE)),
+    **dict.fromkeys(_STATES_OF_SEMAPHORES, (*PROCESSES, EntityKind.SEMAPHORE)),
     **dict.fromkeys(OS_EVENTS, PROCESSES),
     EventKind.SET_EVENT: _BY_PROCESS_OR_STIMULUS,
     EventKind.SCHEDULE: (EntityKind.SCHEDULER,),

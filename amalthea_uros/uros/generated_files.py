@@ -6,13 +6,13 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from amalthea_uros._internal.ports import LIFECYCLE_SERVICES, known_ports, parameter_services
+from amalthea_uros._internal.ports import known_ports
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import resource_folder
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.spec.application import Application, NodeSection
-from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.application import Application
+from amalthea_uros.uros.application.callbacks import handle_count, sections_of
 from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.firmware.code import code_texts, firmware_code
 from amalthea_uros.uros.firmware.omissions import omissions
@@ -131,15 +131,8 @@ def _handles(assembly: Assembly) -> dict[str, int]:
     if loops:
         return loops
     nodes, middleware = assembly.description.application.nodes, assembly.description.middleware
-    return {middleware.stated_executors[0].name: sum(_node_handles(node, middleware) for node in nodes)}
-
-
-def _node_handles(node: NodeSection, middleware: Middleware) -> int:
-    messages = len(node.subscriptions) + len(node.services) + len(node.clients)
-    others = len(node.timers) + len(node.guard_conditions) + len(node.action_servers) + len(node.action_clients)
-    parameters = parameter_services(middleware.ros) if node.parameter_server is not None else 0
-    lifecycle = min(node.lifecycle.services, LIFECYCLE_SERVICES) if node.lifecycle is not None else 0
-    return messages + others + parameters + lifecycle
+    handles = (handle_count(kind, node, middleware.ros) for node in nodes for kind, _ in sections_of(node))
+    return {middleware.stated_executors[0].name: sum(handles)}
 
 
 def _sizes(application: Application) -> dict[str, int]:

@@ -75,13 +75,7 @@ def values_of(options: Sequence[Option]) -> list[tuple[Option, int]]:
 
 def with_generated_options(profile: Profile, options: Sequence[Option]) -> Profile:
     """The middleware as it is built with the options to generate."""
-    table = profile.option_table
-    values = {option.name: table[option.name].described(value) for option, value in values_of(options)}
-    middleware = profile.middleware
-    limits = middleware.limits.model_copy(
-        update={name: value for name, value in values.items() if name in PoolSizes.model_fields}
-    )
-    return profile.configured(middleware.model_copy(update={"limits": limits}))
+    return profile.with_options({option.name: value for option, value in values_of(options)})
 
 
 def check_meta(
@@ -175,19 +169,13 @@ class _MetaComparison(Brief):
 
     def _built(self) -> Profile:
         """The middleware that is built with the file."""
-        limits = PoolSizes.model_construct(
-            **{
-                name: self.profile.option_table[name].described(value)
-                for name, value in self.values.items()
-                if name in PoolSizes.model_fields
-            }
-        )
+        middleware = self.profile.middleware
         update = {
-            "limits": limits,
+            "limits": PoolSizes.model_construct(),
             "multithread": self.values.get(_MULTITHREAD, 0) == 1,
-            "reliable": self.profile.middleware.reliable.model_copy(update={"timeout": None}),
+            "reliable": middleware.reliable.model_copy(update={"timeout": None}),
         }
-        return self.profile.configured(self.profile.middleware.model_copy(update=update))
+        return self.profile.configured(middleware.model_copy(update=update)).with_options(self.values)
 
     def _judge(self, option: Option, described: Option | None, built: Profile, file: Location) -> Iterator[Finding]:
         """What is wrong with the value that an option has with the file."""
@@ -222,7 +210,7 @@ class _MetaComparison(Brief):
         smallest = option.smallest
         if smallest is None or option.available <= smallest:
             return
-        saved = self._size(built) - self._size(self._with(built, option.name, smallest))
+        saved = self._size(built) - self._size(built.with_options({option.name: smallest}))
         message = f"{option.name} is {option.available}, but {smallest} would be enough"
         advice = f"Set it to {smallest} to save {saved} B." if saved else f"Set it to {smallest}."
         yield Finding("GEN002", Severity.INFO, message, place, advice)
@@ -240,11 +228,6 @@ class _MetaComparison(Brief):
             )
             advice = "The figures for the other value do not hold. Change one of them."
             yield Finding("GEN008", Severity.WARNING, message, place, advice)
-
-    def _with(self, built: Profile, name: str, value: int) -> Profile:
-        middleware = built.middleware
-        limits = middleware.limits.model_copy(update={name: self.profile.option_table[name].described(value)})
-        return built.configured(middleware.model_copy(update={"limits": limits}))
 
     def _size(self, built: Profile) -> int:
         return sum(use.size for use in built.memory(self.application))

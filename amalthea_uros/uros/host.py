@@ -24,6 +24,7 @@ from amalthea_uros.uros.application.callbacks import interval_of_rate
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.host_callbacks import callbacks_of, kind_of, published_by, topic_of
 from amalthea_uros.uros.host_checks import HostChecks
+from amalthea_uros.uros.transports.line import span_of
 
 
 def host_of(section: spec.HostSection | None, nodes: Sequence[NodeSection], problems: Notes) -> Host:
@@ -123,7 +124,7 @@ class _HostBuilder:
             latency = topic.latency if topic is not None and topic.latency is not None else self.section.latency
             yield HostTopic(
                 name=name,
-                latency=Span() if latency is None else Span(least=latency.min, most=latency.max),
+                latency=span_of(latency),
                 interval=None if topic is None or topic.rate is None else interval_of_rate(topic.rate),
                 jitter=(topic.jitter or 0) if topic is not None else 0,
                 origin=(topic or self.section).location(),

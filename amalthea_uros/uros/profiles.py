@@ -30,12 +30,8 @@ _FILES = KnownFiles(
 )
 
 
-def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
-    """The profile of a middleware.
-
-    Parameters
-    ----------
-    folder : what the path of a file is relative to; default: the directory of the file that states it
+def profile_of(middleware: Middleware) -> Profile:
+    """The profile of a middleware; the path of a file is relative to the directory of the file that states it.
 
     Raises
     ------
@@ -44,7 +40,7 @@ def profile_of(middleware: Middleware, folder: Path | None = None) -> Profile:
     name, place = middleware.profile, middleware.location("profile")
     if name in KNOWN:
         return KNOWN[name](known_data(name), middleware)
-    path, mistakes = _FILES.find(name, folder or (place.path.parent if place is not None else Path()), place)
+    path, mistakes = _FILES.find(name, place.path.parent if place is not None else Path(), place)
     if mistakes:
         raise ReadError(mistakes)
     own = read_section(path, ProfileData)

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 
 from amalthea_uros._internal.records import replace
 from amalthea_uros.perf.host import Host, HostTopic
-from amalthea_uros.perf.network import Direction, Purpose, Span, plain_topic
+from amalthea_uros.perf.network import Direction, Purpose, plain_topic
 from amalthea_uros.perf.qualified import joined, qualified
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.description import Description, RobotController
@@ -24,6 +24,7 @@ from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.memory import MemoryDemand
 from amalthea_uros.uros.profiles import stated_profile
 from amalthea_uros.uros.stacks import separate_stacks
+from amalthea_uros.uros.transports.line import span_of
 
 
 def assemble_robot(description: Description, controllers: Mapping[str, Assembly]) -> Assembly:
@@ -96,8 +97,7 @@ def _host(description: Description, controllers: Mapping[str, Assembly], system:
     nodes = [node for each in controllers.values() for node in each.description.application.nodes]
     host = host_of(description.host, nodes, problems)
     known = {topic.name for topic in host.topics}
-    stated = description.host.latency if description.host is not None else None
-    latency = Span() if stated is None else Span(least=stated.min, most=stated.max)
+    latency = span_of(description.host.latency if description.host is not None else None)
     between = [HostTopic(name=name, latency=latency) for name in _between(system) if name not in known]
     return replace(host, topics=(*host.topics, *between))
 

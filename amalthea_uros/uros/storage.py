@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from amalthea_uros._internal.lazy_mapping import LazyMapping
+from amalthea_uros._internal.plural import enumerated
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.named import Brief
@@ -81,12 +82,8 @@ class MessageStorage(Brief):
         size, owner = self.limit
         verb = "is" if len(self.unknown) == 1 else "are"
         stacks = "stack" if len(self.unknown) == 1 else "stacks"
-        less = f"; the {stacks} of {_listed(sorted(self.unknown))} {verb} not stated" if self.unknown else ""
+        less = f"; the {stacks} of {enumerated(sorted(self.unknown))} {verb} not stated" if self.unknown else ""
         return f"{_fit(self.room or 0)} in the {size} B of {owner}{less}"
-
-
-def _listed(names: list[str]) -> str:
-    return " and ".join([*([", ".join(names[:-1])] if names[1:] else []), names[-1]])
 
 
 def _fit(count: int) -> str:
@@ -129,10 +126,9 @@ def _room(profile: Profile, memory: MemoryDemand) -> int | None:
 
 def _with_smaller(mtu: Option, profile: Profile, application: Application, memory: MemoryDemand) -> Iterator[tuple[int, int]]:
     """Half the MTU, half of that, and so on, as long as all messages fit in it and in the buffers of the streams."""
-    size, middleware = mtu.available // 2, profile.middleware
+    size = mtu.available // 2
     while size:
-        limits = middleware.limits.model_copy(update={mtu.name: mtu.described(size)})
-        other = profile.configured(middleware.model_copy(update={"limits": limits}))
+        other = profile.with_options({mtu.name: size})
         # Of the settings, the application needs an MTU and buffers of streams.
         if any(each.is_exceeded for each in other.options(application) if each.role is OptionRole.SETTING):
             return

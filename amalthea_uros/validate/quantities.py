@@ -5,26 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 
-from amalthea_uros.metamodel.classes import (
-    ContinuousValueConstant,
-    ContinuousValueHistogram,
-    DiscreteValueConstant,
-    DiscreteValueHistogram,
-    IContinuousValueDeviation,
-    IDiscreteValueDeviation,
-    ITimeDeviation,
-    ProcessingUnit,
-    Time,
-    TimeConstant,
-    TimeHistogram,
-)
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.magnitudes import hertz, picoseconds
 
-Deviation = ITimeDeviation | IDiscreteValueDeviation | IContinuousValueDeviation
+Deviation = am.ITimeDeviation | am.IDiscreteValueDeviation | am.IContinuousValueDeviation
 
 
-def clock(unit: ProcessingUnit) -> Fraction | None:
+def clock(unit: am.ProcessingUnit) -> Fraction | None:
     """The clock frequency of a processing unit in hertz; None if it is unknown."""
     value = hertz(unit.frequency_domain.default_value) if unit.frequency_domain is not None else None
     return value if value is not None and value > 0 else None
@@ -35,10 +23,10 @@ def bounds(deviation: Deviation | None) -> tuple[float | None, float | None]:
     match deviation:
         case None:
             return None, None
-        case TimeConstant() | DiscreteValueConstant() | ContinuousValueConstant():
+        case am.TimeConstant() | am.DiscreteValueConstant() | am.ContinuousValueConstant():
             value = _number(deviation, "value")
             return value, value
-        case TimeHistogram() | DiscreteValueHistogram() | ContinuousValueHistogram():
+        case am.TimeHistogram() | am.DiscreteValueHistogram() | am.ContinuousValueHistogram():
             entries: Sequence[Element] = deviation.entries
             return _of_all(min, entries, "lower_bound"), _of_all(max, entries, "upper_bound")
     return _number(deviation, "lower_bound"), _number(deviation, "upper_bound")
@@ -50,5 +38,5 @@ def _of_all(choose: Callable[[Iterable[float]], float], entries: Sequence[Elemen
 
 
 def _number(element: Element, feature: str) -> float | None:
-    value: Time | float | None = element.effective(feature)
-    return picoseconds(value) if isinstance(value, Time) else value
+    value: am.Time | float | None = element.effective(feature)
+    return picoseconds(value) if isinstance(value, am.Time) else value

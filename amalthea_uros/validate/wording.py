@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from amalthea_uros._internal.plural import enumerated
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.naming import name_of
 
@@ -22,4 +23,4 @@ def joined(texts: Iterable[str], most: int = 5) -> str:
     every = list(texts)
     if len(every) > most:
         every[most:] = [f"{len(every) - most} more"]
-    return " and ".join(filter(None, [", ".join(every[:-1]), *every[-1:]]))
+    return enumerated(every)

@@ -6,6 +6,7 @@ from collections import defaultdict
 from functools import cache
 
 import pytest
+from state_charts import check_trace
 from support import MODEL, ROOT
 
 from amalthea_uros import build, describe, load, measure
@@ -15,7 +16,6 @@ from amalthea_uros.errors import ReadError
 from amalthea_uros.findings import catalogue
 from amalthea_uros.services.generate import check_colcon_meta
 from amalthea_uros.services.import_code import import_code
-from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.validate import registry
 from amalthea_uros.validate.settings import project_settings
 

@@ -51,7 +51,7 @@ def test_the_page_says_how_close_to_their_bounds_observed_values_are(sample):
 
 def test_every_call_is_that_of_a_player():
     tally = Tally()
-    assert {seed: said for seed in every(20, range(3000)) if (said := different_calls(seed, tally))} == {}
+    assert {seed: said for seed in every(40, range(3000)) if (said := different_calls(seed, tally))} == {}
     assert tally.calls["executors"] > 50
     assert tally.calls["applications"] > 50
 

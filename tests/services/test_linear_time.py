@@ -2,7 +2,7 @@
 
 import pytest
 
-from amalthea_uros import build, calibrate, diff, load, measure, simulate, sweep
+from amalthea_uros import build, calibrate, diff, load, measure, report, simulate, sweep
 from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.check import check_files
 from amalthea_uros.services.format import format_files
@@ -118,6 +118,7 @@ ALMOST_LINEAR = 2**1.1
 COMMANDS = {
     "analyze": lambda path: analyze_files([path]),
     "build": build,
+    "report": lambda path: report(path, with_simulation=False),
     "simulate": lambda path: simulate(path, "10 ms"),
     "sweep": lambda path: sweep(path, ["t0.execution_time=1us,2us"]),
 }
@@ -134,6 +135,21 @@ def test_commands_on_many_tasks(command, tmp_path):
     paths = [tmp_path / f"{size}.yaml" for size in FEW]
     for path in paths:
         path.write_text(timers(int(path.stem)))
+    assert growth(COMMANDS[command], paths) < ALMOST_LINEAR
+
+
+def chains(count):
+    """A description of six tasks with as many chains."""
+    tasks = repeated("{name: t#, period: 1# ms, execution_time: 1 us, priority: 1#}", 6, ", ")
+    each = ", ".join(f"{{name: c{number}, path: [t{number % 5}, t{number % 5 + 1}]}}" for number in range(count))
+    return f"{DESCRIPTION}hardware: {{platform: single-core}}\ntasks: [{tasks}]\nchains: [{each}]\n"
+
+
+@pytest.mark.parametrize("command", ["analyze", "build", "report"])
+def test_commands_on_many_chains(command, tmp_path):
+    paths = [tmp_path / f"{size}.yaml" for size in FEW]
+    for path in paths:
+        path.write_text(chains(int(path.stem)))
     assert growth(COMMANDS[command], paths) < ALMOST_LINEAR
 
 

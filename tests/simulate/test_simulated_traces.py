@@ -5,6 +5,7 @@ from functools import partial
 import pytest
 from effort import every
 from hand_made_systems import READ, SYSTEMS, Proc, access, system, ticks
+from state_charts import StateCharts, check_trace
 from support import ROOT, SHARED
 from traces import said
 
@@ -18,7 +19,6 @@ from amalthea_uros.simulate.runs.run import simulate_system
 from amalthea_uros.timing.basics.quantities import JobMetric
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.sinks import EventRecorder, open_sink
-from amalthea_uros.trace.state_charts import StateCharts, check_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS

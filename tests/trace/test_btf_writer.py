@@ -1,13 +1,11 @@
 """BTF files as the standard wants them (BTF 2.3.0)."""
 
 import io
-from datetime import UTC, datetime, timedelta, timezone
 
 import pytest
 from traces import encoded, table
 
 from amalthea_uros._version import __version__
-from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.sinks import open_sink
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 
@@ -74,8 +72,8 @@ SLICES = {
 }
 
 
-def written(entities, rows, **options):
-    return encoded(".btf", table(entities, rows), **options).decode()
+def written(entities, rows):
+    return encoded(".btf", table(entities, rows)).decode()
 
 
 def events(text):
@@ -87,28 +85,12 @@ def in_nanoseconds(rows):
 
 
 def test_a_preemption_is_written_as_the_standard_shows_it():
-    text = written(ENTITIES, in_nanoseconds(PREEMPTION), timescale="ns")
-    assert events(text) == LINES.splitlines()
+    assert events(written(ENTITIES, PREEMPTION)) == LINES.splitlines()
 
 
 def test_the_header():
     text = written(ENTITIES[:1], [])
     assert text == f"#version 2.3.0\n#creator amuros {__version__}\n#timescale ps\n#entityTypeMapping STI Sti_A\n"
-
-
-def test_the_date_is_that_of_the_caller_in_universal_time():
-    noon = datetime(2024, 1, 1, 12, tzinfo=timezone(timedelta(hours=1)))
-    assert "#creationDate 2024-01-01T11:00:00Z\n" in written(ENTITIES, [], creation_date=noon)
-    assert noon == datetime(2024, 1, 1, 11, tzinfo=UTC)
-
-
-def test_numbers_instead_of_names():
-    rows = [(5, K.TRIGGER, STI_B, 3, STI_B, 3), (5, K.ACTIVATE, STI_B, 3, TASK_A, 8)]
-    lines = written(ENTITIES, rows, numeric=True).splitlines()
-    assert lines[3:5] == ["#typeMapping 0 STI", "#typeMapping 1 T"]
-    assert "#entityMapping 3 Task_A" in lines
-    assert "#entityTypeMapping 1 3" in lines
-    assert lines[-2:] == ["5,1,3,0,1,3,trigger", "5,1,3,1,3,8,activate"]
 
 
 MORE = [*ENTITIES, Entity(EntityKind.SEMAPHORE, "Lock"), Entity(EntityKind.OS_EVENT, "Go")]
@@ -150,13 +132,3 @@ def test_an_entity_that_comes_later_is_declared_before_its_first_event():
         entities.append(ENTITIES[3])
         sink.write(table(entities, [(9, K.START, 2, 0, 3, 0)]))
     assert stream.getvalue().decode().splitlines()[-2:] == ["#entityTypeMapping T Task_A", "9,Core_1,0,T,Task_A,0,start"]
-
-
-def test_a_time_that_the_unit_cannot_express_is_refused():
-    with pytest.raises(InvalidArgumentError, match="1500 ps is not a whole number of ns"):
-        written(ENTITIES, [(1000, K.READ, TASK_A, 0, LABEL, 0), (1500, K.READ, TASK_A, 0, LABEL, 0)], timescale="ns")
-
-
-def test_an_unknown_unit_is_refused():
-    with pytest.raises(InvalidArgumentError, match="timescale 'fs'; expected one of ps, ns, us, ms, s"):
-        written(ENTITIES, [], timescale="fs")

@@ -12,6 +12,7 @@ import pytest
 from ctf_traces import PacketWriter, ros2_writer, write_zephyr, zephyr_event, zephyr_metadata
 from hypothesis import given
 from hypothesis import strategies as st
+from state_charts import check_trace
 from traces import told
 
 from amalthea_uros.errors import InvalidArgumentError, ReadError
@@ -20,7 +21,6 @@ from amalthea_uros.trace.ctf.streams import PacketStream
 from amalthea_uros.trace.ctf.types import ArrayType, IntegerType, StringType
 from amalthea_uros.trace.files import TraceProblems, UnreadableError
 from amalthea_uros.trace.readers import format_of, open_trace
-from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.trace.table import EventKind
 
 A, B, IDLE = (0x2000, "A"), (0x2100, "B"), (0x1000, "idle")

@@ -6,10 +6,10 @@ from itertools import pairwise
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from state_charts import StateCharts
 from traces import chunks, random_trace, said, table
 
 from amalthea_uros.trace.derived_events import CHANGE, RunnableSuspensions, SemaphoreStates
-from amalthea_uros.trace.state_charts import StateCharts
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind
 
 K = EventKind

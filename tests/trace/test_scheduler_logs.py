@@ -5,11 +5,11 @@ import gzip
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from state_charts import check_trace
 from traces import told
 
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.trace.readers import BY_CONTENT, format_of, open_trace
-from amalthea_uros.trace.state_charts import check_trace
 
 # From the sample of the guide of NuttX, with nanoseconds and other names; a thread with a blank and one without a name.
 NUTTX = """\

@@ -11,6 +11,7 @@ from random import Random
 from typing import NoReturn
 
 from lxml import etree
+from state_charts import check_trace
 from templating import ROOT
 
 from amalthea_uros._internal.paths import is_description
@@ -28,7 +29,6 @@ from amalthea_uros.services.format import format_files
 from amalthea_uros.services.simulate import simulate_files
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.simulate.options import Options, SimulationMode
-from amalthea_uros.trace.state_charts import check_trace
 from amalthea_uros.units import Duration
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save

@@ -46,17 +46,6 @@ class ReadWriteTimes:
     preempts_reader: bool = False
     jobs_later: int | None = None
 
-    def scaled(self, factor: int) -> ReadWriteTimes:
-        """The same in a unit of time that is smaller by a factor."""
-        return replace(
-            self,
-            releases=self.releases * factor,
-            reads=self.reads * factor,
-            writes=self.writes * factor,
-            cycle=self.cycle * factor,
-            until=self.until * factor,
-        )
-
     def extended(self, until: Time) -> ReadWriteTimes:
         """The same for a longer time."""
         rounds = -(-(until - self.until) // self.cycle)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from amalthea_uros.bridge.basics.codecs import PLAIN, Codec
 from amalthea_uros.bridge.basics.context import Building, Extracting
+from amalthea_uros.bridge.basics.json_text import default_value
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.perf.named import Named
@@ -48,7 +49,7 @@ class ClassEntry:
         declared = {field.name: field for field in fields(model_class)}
         self.has_origin = "origin" in declared
         self.is_activity = "locate" in declared
-        self._defaults = {name: _default(declared[name]) for name in columns}
+        self._defaults = {name: default_value(declared[name]) for name in columns}
         features = features_of(amalthea_class)
         self._extracted = tuple(
             (
@@ -127,10 +128,6 @@ class ClassEntry:
                     return None
             values[name] = value
         return values
-
-
-def _default(field: Any) -> Any:
-    return field.default_factory() if field.default_factory is not MISSING else field.default
 
 
 class ClassTable:

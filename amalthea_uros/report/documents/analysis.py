@@ -39,8 +39,10 @@ from amalthea_uros.report.wording.cells import (
     at_most,
     by_core_and_priority,
     deadline_text,
+    directed_limit,
     exactly,
-    load_text,
+    limited_text,
+    load_cells,
     priority_text,
     response_ends,
     verdict_badge,
@@ -53,7 +55,7 @@ from amalthea_uros.report.wording.impact import impact_cells, unchanged_text
 from amalthea_uros.services.analyze import AnalysisResult, analysis_result
 from amalthea_uros.services.what_if import WhatIf
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.units import Rounding, Time, frequency_text, time_text
+from amalthea_uros.units import Time, time_text
 
 BAR = 20
 HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
@@ -147,31 +149,9 @@ def wires_of(analysis: Analysis) -> list[ProcessorResult]:
 
 
 def _loads(processors: Sequence[ProcessorResult], kind: str) -> Table:
-    rows = [
-        (
-            processor.name,
-            frequency_text(processor.frequency) if processor.frequency else UNKNOWN,
-            _percent(processor.best, Rounding.DOWN),
-            _percent(processor.mean, Rounding.NEAREST),
-            _worst_load(processor),
-            _bar(processor),
-        )
-        for processor in processors
-    ]
+    rows = [(*load_cells(processor), _bar(processor)) for processor in processors]
     clock = "clock" if kind == "core" else "bit rate"
     return table(f"Load of each {kind}", (kind, f"~>{clock}", "~~>best", "~~>mean", ">worst", "~~~"), rows)
-
-
-def _percent(load: Fraction | None, rounding: Rounding) -> str:
-    """A load in percent; bounds are rounded so that they remain bounds."""
-    return UNKNOWN if load is None else load_text(load, rounding)
-
-
-def _worst_load(processor: ProcessorResult) -> str:
-    """The worst load, or the part of it that is known."""
-    if processor.worst is not None or not processor.at_least:
-        return _percent(processor.worst, Rounding.UP)
-    return f"at least {_percent(processor.at_least, Rounding.DOWN)}"
 
 
 def _bar(processor: ProcessorResult) -> str:
@@ -366,18 +346,13 @@ def _requirement_row(requirement: RequirementResult, analysis: Analysis) -> tupl
     is_certain = requirement.margin is not None and requirement.verdict is not Verdict.UNKNOWN
     return (
         requirement.name,
-        f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
-        "-" if requirement.limit is None else limit_text(requirement.limit, requirement.is_upper),
+        limited_text(requirement.quantity, requirement.object),
+        "-" if requirement.limit is None else directed_limit(time_text(requirement.limit), is_upper=requirement.is_upper),
         _value(requirement),
         verdict_badge(requirement),
         at_least(requirement.margin) if is_certain else "",
         "" if _shows_ends(requirement) else brief(requirement.reason, analysis),
     )
-
-
-def limit_text(limit: Time, is_upper: bool) -> str:
-    """A limit, such as "at most 1 ms"."""
-    return f"at {'most' if is_upper else 'least'} {time_text(limit)}"
 
 
 def _shows_ends(requirement: RequirementResult) -> bool:

@@ -20,7 +20,7 @@ from amalthea_uros.compare.results import (
 from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.report.basics.document import ResultDocument, Sentences, document, section, table
 from amalthea_uros.report.documents.simulation import duration_text
-from amalthea_uros.report.wording.cells import words
+from amalthea_uros.report.wording.cells import directed_limit, limited_text, words
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import Rounding, rounded_time_text, time_text
 
@@ -298,7 +298,7 @@ def _limit_text(limit: MeasuredLimit) -> str:
     if limit.limit is None:
         return "-"
     value = time_text(limit.limit) if limit.is_time else f"{float(limit.limit):g}"
-    return f"at {'most' if limit.is_upper else 'least'} {value}"
+    return directed_limit(value, is_upper=limit.is_upper)
 
 
 def _distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
@@ -372,7 +372,7 @@ def _limit_cells(limit: MeasuredLimit) -> tuple[str, ...]:
     rounding = Rounding.UP if limit.is_upper else Rounding.DOWN
     return (
         limit.name,
-        f"{limit.quantity} of {limit.object}" if limit.object else limit.quantity,
+        limited_text(limit.quantity, limit.object),
         _limit_text(limit),
         rounded_time_text(limit.value, rounding, limit.limit) if limit.is_time and limit.value is not None else "-",
         f"{limit.samples:,}",

@@ -14,7 +14,7 @@ from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.report.basics.document import Block, Lead, ResultDocument, Sentences, Table, document, lines, section, table
 from amalthea_uros.report.documents.analysis import callbacks
-from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, load_text, share_text, words
+from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, directed_limit, load_text, share_text, words
 from amalthea_uros.report.wording.chains import latency_cells, quantity_text, value_text
 from amalthea_uros.report.wording.largest_part import largest_cause, largest_term, latency_parts
 from amalthea_uros.timing.response import Claim
@@ -239,7 +239,7 @@ def _limits(explanation: ChainExplanation) -> Iterator[str]:
             rest = f": {each.reason}" if each.reason else ""
         else:
             rest = f", {_margin(each, each.margin or 0)}"
-        limit = "" if each.limit is None else f" {'at most' if each.is_upper else 'at least'} {time_text(each.limit)}"
+        limit = "" if each.limit is None else f" {directed_limit(time_text(each.limit), is_upper=each.is_upper)}"
         yield f"{each.name}, {each.quantity}{limit}: {each.verdict}{rest}"
 
 

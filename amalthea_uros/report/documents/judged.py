@@ -14,7 +14,7 @@ from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.summary import urgency
 from amalthea_uros.judge.verdict import FAILURES, WORST_FIRST, Verdict
 from amalthea_uros.report.basics.document import Cell, Table, table
-from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, load_text, verdict_badge
+from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, limited_text, load_text, verdict_badge
 from amalthea_uros.timing.basics.quantities import jitter_name
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import Rounding, Time, time_text
@@ -69,7 +69,7 @@ def _row(item: Judged, claims: Mapping[tuple[str, str], str]) -> tuple[Cell, ...
         lower = upper = item.response.worst if item.response is not None else None
         claim = _claim(item)
     else:
-        what = f"{item.quantity} of {item.object}" if item.object else item.quantity
+        what = limited_text(item.quantity, item.object)
         lower, upper, claim = item.lower, item.upper, _requirement_claim(item, claims)
     value, used = _value_text(item, lower, upper), _used(upper, item) if item.is_upper else "-"
     return (item.name, verdict_badge(item), what, value, limit_text(item), used, margin_text(item), claim, why(item))

@@ -61,7 +61,7 @@ def _load(load: Fraction | None, frequency: Fraction | None) -> str:
     """A load in percent, or the clock at which it is 100 %."""
     if frequency is not None:
         return f"100 % at {clock_text(frequency)}"
-    return UNKNOWN if load is None else load_text(load, Rounding.UP)
+    return load_text(load, Rounding.UP)
 
 
 def _sum_rows(processes: Iterable[ProcessResult]) -> Iterator[tuple[Cell, ...]]:

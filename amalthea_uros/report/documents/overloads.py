@@ -9,7 +9,7 @@ from fractions import Fraction
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
 from amalthea_uros.report.basics.document import Cell, Section, Sentences, section, table
-from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, load_text, priority_text, relief
+from amalthea_uros.report.wording.cells import at_least, at_most, load_text, priority_text, relief
 from amalthea_uros.units import Rounding
 
 
@@ -30,7 +30,7 @@ def _row(process: ProcessResult) -> tuple[Cell, ...]:
         priority_text(process.priority, process.is_isr),
         at_most(process.wcet),
         at_least(process.min_interarrival),
-        UNKNOWN if process.share is None else load_text(process.share, Rounding.UP),
+        load_text(process.share, Rounding.UP),
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 
 from amalthea_uros.analyze.explanations.processes import explain_process
 from amalthea_uros.analyze.impact import impact
@@ -54,11 +53,10 @@ from amalthea_uros.report.documents.worst_cases import gantt_section, histogram_
 from amalthea_uros.report.pictures.load_bars import draw_loads
 from amalthea_uros.report.pictures.response_bars import draw_responses
 from amalthea_uros.report.pictures.system_picture import draw_system
-from amalthea_uros.report.wording.cells import UNKNOWN, badge, load_text, verdict_badge
+from amalthea_uros.report.wording.cells import badge, load_cells, load_text, verdict_badge
 from amalthea_uros.report.wording.chains import value_text
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.report import ReportContent
-from amalthea_uros.units import Rounding, frequency_text
 
 
 def _changes_section(content: ReportContent) -> Section | None:
@@ -156,24 +154,9 @@ def _load_section(content: ReportContent) -> Section | None:
 
 
 def _row_of_loads(core: ProcessorResult, content: ReportContent) -> tuple[Cell, ...]:
-    worst = _load(core.worst, Rounding.UP)
-    if core.worst is None and core.at_least:
-        worst = f"at least {load_text(core.at_least, Rounding.DOWN)}"
     simulation = content.simulation.simulation if content.simulation is not None else None
     observed = simulation.cores[core.name].load if simulation is not None else None
-    return (
-        core.name,
-        frequency_text(core.frequency) if core.frequency else UNKNOWN,
-        _load(core.best, Rounding.DOWN),
-        _load(core.mean),
-        worst,
-        "-" if observed is None else load_text(observed),
-        _remark(core),
-    )
-
-
-def _load(load: Fraction | None, rounding: Rounding = Rounding.NEAREST) -> str:
-    return UNKNOWN if load is None else load_text(load, rounding)
+    return (*load_cells(core), "-" if observed is None else load_text(observed), _remark(core))
 
 
 def _remark(core: ProcessorResult) -> Cell:

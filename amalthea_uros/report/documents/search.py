@@ -163,7 +163,7 @@ def _amount(value: Amount, quantity: str) -> str:
 def _loads(before: Analysis, after: Analysis) -> Iterator[tuple[str, ...]]:
     for old, new in zip(before.processors, after.processors, strict=True):
         if old.worst or new.worst:
-            loads = (UNKNOWN if core.worst is None else load_text(core.worst, Rounding.UP) for core in (old, new))
+            loads = (load_text(core.worst, Rounding.UP) for core in (old, new))
             yield new.name, "worst load", *loads, "", "", ""
 
 

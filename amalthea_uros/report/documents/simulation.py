@@ -25,7 +25,16 @@ from amalthea_uros.report.basics.document import (
     table,
 )
 from amalthea_uros.report.documents.analysis import impact_section
-from amalthea_uros.report.wording.cells import badge, by_core_and_priority, deadline_text, load_text, observed, words
+from amalthea_uros.report.wording.cells import (
+    badge,
+    by_core_and_priority,
+    deadline_text,
+    directed_limit,
+    limited_text,
+    load_text,
+    observed,
+    words,
+)
 from amalthea_uros.report.wording.chains import CHAINS_HEADING
 from amalthea_uros.report.wording.closing_line import left_text
 from amalthea_uros.report.wording.findings import joined
@@ -61,7 +70,7 @@ def limit_text(requirement: RequirementObservation) -> str:
     """The limit, such as "at most 1 ms"."""
     if requirement.limit is None:
         return "-"
-    return f"at {'most' if requirement.is_upper else 'least'} {value_text(requirement, requirement.limit)}"
+    return directed_limit(value_text(requirement, requirement.limit), is_upper=requirement.is_upper)
 
 
 def value_text(requirement: RequirementObservation, value: Fraction | None) -> str:
@@ -98,7 +107,7 @@ def _tightest(simulation: Simulation) -> str:
 
 def _failure(item: Judged) -> str:
     if isinstance(item, RequirementObservation):
-        what = f"{item.quantity} of {item.object}" if item.object else item.quantity
+        what = limited_text(item.quantity, item.object)
         if item.value is None or item.limit is None:
             return f"{what}: {item.reason}"
         reason = f" ({item.reason})" if item.reason else ""
@@ -278,7 +287,7 @@ def _requirement(requirement: RequirementObservation) -> tuple[Cell, ...]:
     rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
     return (
         requirement.name,
-        f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity,
+        limited_text(requirement.quantity, requirement.object),
         limit_text(requirement),
         _rounded(requirement, requirement.value, rounding, requirement.limit),
         badge(requirement.verdict),

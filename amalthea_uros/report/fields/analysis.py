@@ -13,7 +13,7 @@ from amalthea_uros.analyze.sensitivity import Sensitivity
 from amalthea_uros.design.missing_values import MissingValues
 from amalthea_uros.executors.results import ExecutorResult, HandleResult, Hop, Loss, TimePart
 from amalthea_uros.report.fields.changes import CHANGED
-from amalthea_uros.report.fields.declaration import ABSENT, Field, declare, given, json_of
+from amalthea_uros.report.fields.declaration import ABSENT, Field, declare, given, group, json_of
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.analyze import AnalysisResult
@@ -87,10 +87,7 @@ declare(MissingValues, ("set", lambda missing: list(map(str, missing.changes))),
 declare(
     ProcessorResult,
     "name",
-    (
-        "utilisation",
-        lambda core: {"bcet": core.best, "acet": core.mean, "wcet": core.worst, "wcet_at_least": core.at_least},
-    ),
+    ("utilisation", group(("bcet", "best"), ("acet", "mean"), ("wcet", "worst"), ("wcet_at_least", "at_least"))),
 )
 declare(
     ProcessResult,
@@ -133,8 +130,8 @@ declare(
 declare(
     ExecutorResult,
     *("name", "task"),
-    ("round", lambda executor: {"min_ps": executor.round.least, "max_ps": executor.round.most}),
-    ("loop", lambda executor: {"min_ps": executor.loop.least, "max_ps": executor.loop.most}),
+    ("round", group(("min_ps", "round.least"), ("max_ps", "round.most"))),
+    ("loop", group(("min_ps", "loop.least"), ("max_ps", "loop.most"))),
     *("reason", "handles"),
 )
 declare(

@@ -61,15 +61,16 @@ def json_of(value: Any, name: str = "") -> Any:
         case Mapping():
             return {key: json_of(each, name) for key, each in value.items()}
         case _ if type(value) in _FIELDS:
-            return _object(value)
+            return record(value, _FIELDS[type(value)])
         case Iterable():
             return [json_of(each, name) for each in value]
     raise TypeError(f"{type(value).__name__} has no fields")
 
 
-def _object(value: Any) -> dict[str, Any]:
+def record(value: Any, fields: Iterable[Field]) -> dict[str, Any]:
+    """Some fields of an object, whether its class is declared or not."""
     found: dict[str, Any] = {}
-    for field in _FIELDS[type(value)]:
+    for field in fields:
         name, source = (field, field.removesuffix(TIME_SUFFIX)) if isinstance(field, str) else field
         part = value_at(value, source)
         if name == ALSO:
@@ -93,6 +94,16 @@ def value_at(value: Any, source: Source) -> Any:
             return None
         value = value.get(step) if isinstance(value, Mapping) else getattr(value, step)
     return value
+
+
+def group(*fields: Field) -> Callable[[Any], dict[str, Any]]:
+    """A source of several fields of the same object, as one."""
+    return lambda value: record(value, fields)
+
+
+def list_of(source: Source, *fields: Field) -> Callable[[Any], list[dict[str, Any]]]:
+    """A source of a list: the same fields of each of several objects."""
+    return lambda value: [record(part, fields) for part in value_at(value, source)]
 
 
 def given(source: str) -> Callable[[Any], Any]:

@@ -5,45 +5,27 @@ from __future__ import annotations
 from typing import Any
 
 from amalthea_uros.perf.executors import Executor
-from amalthea_uros.report.fields.declaration import declare
+from amalthea_uros.report.fields.declaration import ALSO, Field, declare, group, list_of, record
 from amalthea_uros.services.build import BuildResult
 from amalthea_uros.services.generate import GenerateResult, MetaCheck
-from amalthea_uros.uros.assemble import Assembly
 from amalthea_uros.uros.creation_traffic import CreationTraffic, SentForCreation
 from amalthea_uros.uros.generated_options import values_of
 from amalthea_uros.uros.initialisation import Initialisation
 from amalthea_uros.uros.memory import MemoryDemand
 
-
-def _messages(assembly: Assembly) -> list[dict[str, Any]]:
-    return [
-        {
-            "topic": item.message.topic,
-            "incoming": item.message.is_incoming,
-            "interval_ps": item.message.interval,
-            "bytes": item.length,
-            "frames": item.frames,
-            "bus_time_ps": item.transmission_time,
-        }
-        for item in assembly.messages
-    ]
-
-
-def _pools(assembly: Assembly) -> list[dict[str, Any]]:
-    return [
-        {"option": pool.name, "needed": pool.needed, "available": pool.available, "stated": pool.is_stated}
-        for pool in assembly.pools
-    ]
-
-
-def _of_controller(assembly: Assembly) -> dict[str, Any]:
-    """The middleware of a controller of a robot."""
-    return {
-        "messages": _messages(assembly),
-        "initialisation": assembly.initialisation,
-        "pools": _pools(assembly),
-        "memory": assembly.memory,
-    }
+#: The middleware of a controller.
+_MIDDLEWARE: tuple[Field, ...] = (
+    (
+        "messages",
+        list_of(
+            "messages",
+            *(("topic", "message.topic"), ("incoming", "message.is_incoming"), ("interval_ps", "message.interval")),
+            *(("bytes", "length"), "frames", ("bus_time_ps", "transmission_time")),
+        ),
+    ),
+    "initialisation",
+    ("pools", list_of("pools", ("option", "name"), "needed", "available", ("stated", "is_stated"))),
+)
 
 
 def _options(result: GenerateResult) -> list[dict[str, Any]]:
@@ -66,22 +48,22 @@ declare(
     ("model", lambda result: str(result.document.path or "unsaved")),
     ("description", lambda result: str(result.description)),
     ("amalthea", "document.version"),
-    (
-        "choices",
-        lambda result: [{"task": c.task, "period_ps": c.period, "reason": c.reason} for c in result.assembly.choices],
-    ),
+    ("choices", list_of("assembly.choices", "task", "period_ps", "reason")),
     ("placement", "assembly.placement"),
     ("executors", "assembly.system.executors"),
-    ("messages", lambda result: _messages(result.assembly)),
-    ("initialisation", "assembly.initialisation"),
-    ("pools", lambda result: _pools(result.assembly)),
+    (ALSO, lambda result: record(result.assembly, _MIDDLEWARE)),
     ("memory", lambda result: None if result.assembly.controllers else result.assembly.memory),
-    ("controllers", lambda result: {name: _of_controller(each) for name, each in result.assembly.controllers.items()}),
+    (
+        "controllers",
+        lambda result: {
+            name: record(controller, (*_MIDDLEWARE, "memory")) for name, controller in result.assembly.controllers.items()
+        },
+    ),
     "findings",
 )
 declare(
     Initialisation,
-    ("entities", lambda start: [{"kind": entity.kind, "name": entity.name} for entity in start.entities]),
+    ("entities", list_of("entities", "kind", "name")),
     ("least_cycles", "min_cycles"),
     ("most_cycles", "max_cycles"),
     ("least_time_ps", "min_time"),
@@ -109,25 +91,18 @@ declare(
     ("period_ps", "loop.period"),
     ("trigger", "trigger.kind"),
     "takes_first",
-    (
-        "handles",
-        lambda executor: [
-            {"handle": h.name, "kind": h.kind, "interval_ps": h.interval, "runnable": h.runnable, "depth": h.depth}
-            for h in executor.handles
-        ],
-    ),
+    ("handles", list_of("handles", ("handle", "name"), "kind", "interval_ps", "runnable", "depth")),
 )
 declare(
     MemoryDemand,
-    ("parts", lambda memory: [{"name": use.name, "bytes": use.size, "formula": use.formula} for use in memory.uses]),
+    ("parts", list_of("uses", "name", ("bytes", "size"), "formula")),
     (
         "stacks",
-        lambda memory: {
-            "shared": memory.stacks.shared,
-            "bytes": memory.stacks.size,
-            "of": [{"process": user.name, "bytes": user.size} for user in memory.stacks.users],
-            "unknown": memory.stacks.unknown,
-        },
+        group(
+            *(("shared", "stacks.shared"), ("bytes", "stacks.size")),
+            ("of", list_of("stacks.users", ("process", "name"), ("bytes", "size"))),
+            ("unknown", "stacks.unknown"),
+        ),
     ),
     ("total_bytes", "total"),
     "is_complete",

@@ -9,43 +9,33 @@ from amalthea_uros.analyze.results.explanations import (
     ChainExplanation,
     Execution,
     ExecutionShare,
-    LatencyCause,
     ProcessExplanation,
     ProcessHop,
 )
 from amalthea_uros.design.improvements import Improvement, Improvements
-from amalthea_uros.report.fields.declaration import declare, json_of
+from amalthea_uros.report.fields.declaration import Field, declare, json_of, list_of, record
 from amalthea_uros.report.wording.chains import cause_text
 from amalthea_uros.services.analyze import Explanation
 
 
-def _named(*names: str) -> Any:
-    """A function that reads attributes of an object under their names."""
-    return lambda found: {name: getattr(found, name) for name in names}
-
-
 def _hops(explanation: ChainExplanation) -> list[dict[str, Any]]:
-    return [
-        {
-            **json_of(hop),
-            "share": float(explanation.share(hop.wait + hop.run)),
-            "wait_causes": [_cause(cause, hop) for cause in hop.wait_causes],
-            "run_causes": [_cause(cause, hop) for cause in hop.run_causes],
-            "executions": json_of(hop.executions),
-        }
-        for hop in explanation.hops
-    ]
+    return [json_of(hop) | {"share": float(explanation.share(hop.wait + hop.run))} | _parts(hop) for hop in explanation.hops]
 
 
-def _cause(cause: LatencyCause, hop: ProcessHop) -> dict[str, Any]:
-    return {
-        "kind": cause.kind,
-        "time_ps": cause.time,
-        "process": cause.process or None,
-        "jobs": cause.jobs or None,
-        "terms": {f"{name}_ps": time for name, time in cause.terms},
-        "reason": cause_text(cause, hop),
-    }
+def _parts(hop: ProcessHop) -> dict[str, Any]:
+    """Why a hop takes its time, and what executes meanwhile."""
+    fields: tuple[Field, ...] = (
+        *("kind", "time_ps"),
+        ("process", lambda cause: cause.process or None),
+        ("jobs", lambda cause: cause.jobs or None),
+        ("terms", lambda cause: {f"{name}_ps": time for name, time in cause.terms}),
+        ("reason", lambda cause: cause_text(cause, hop)),
+    )
+    causes: tuple[Field, ...] = (
+        ("wait_causes", list_of("wait_causes", *fields)),
+        ("run_causes", list_of("run_causes", *fields)),
+    )
+    return record(hop, (*causes, "executions"))
 
 
 declare(Explanation, *("name", "process", "callbacks", "chain", "improvements"))
@@ -54,17 +44,14 @@ declare(
     ("wcrt_ps", "process.response.worst"),
     ("wcet_ps", "process.wcet"),
     ("reason", "process.reason"),
-    (
-        "interference",
-        lambda found: [{"process": each.name, "jobs": each.jobs, "time_ps": each.time} for each in found.shares],
-    ),
+    ("interference", list_of("shares", ("process", "name"), "jobs", "time_ps")),
     "execution",
-    ("loads", lambda found: map(_named("name", "priority", "utilisation"), found.loads)),
+    ("loads", list_of("loads", "name", "priority", "utilisation")),
     ("load", lambda found: found.load if found.loads else None),
     "supply",
     ("callbacks", lambda found: [each.name for each in found.callbacks]),
     *("worst_job", "in_worst_job"),
-    ("origins", lambda found: map(_named("process", "kind", "reason", "remedy"), found.origins)),
+    ("origins", list_of("origins", "process", "kind", "reason", "remedy")),
 )
 declare(
     CallbackExplanation,
@@ -78,7 +65,7 @@ declare(
 declare(
     ExecutionShare,
     *("name", "is_runnable", "calls"),
-    ("counter", lambda share: None if share.counter is None else _named("prescaler", "offset")(share.counter)),
+    ("counter", lambda share: None if share.counter is None else record(share.counter, ("prescaler", "offset"))),
     *("time_ps", "reason"),
 )
 declare(
@@ -92,19 +79,7 @@ declare(
     ("hops", _hops),
     ("until_overwritten_ps", "overwritten"),
     "reason",
-    (
-        "requirements",
-        lambda found: [
-            {
-                "name": each.name,
-                "quantity": each.quantity,
-                "limit_ps": each.limit,
-                "verdict": each.verdict,
-                "margin_ps": each.margin,
-            }
-            for each in found.requirements
-        ],
-    ),
+    ("requirements", list_of("requirements", "name", "quantity", "limit_ps", "verdict", "margin_ps")),
 )
 declare(
     ProcessHop,
@@ -120,7 +95,7 @@ declare(
     ("before_ps", "before"),
     ("after_ps", "after"),
     *("claim", "is_safe", "is_enough"),
-    ("drawbacks", lambda found: map(_named("name", "before", "after", "is_verdict"), found.drawbacks)),
+    ("drawbacks", list_of("drawbacks", "name", "before", "after", "is_verdict")),
     (
         "latencies",
         lambda found: {

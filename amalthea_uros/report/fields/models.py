@@ -10,7 +10,7 @@ from amalthea_uros.difference.comparison import ModelChange
 from amalthea_uros.findings.accepted import fingerprint
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.report.fields import changes
-from amalthea_uros.report.fields.declaration import ALSO, declare, given, json_of
+from amalthea_uros.report.fields.declaration import ALSO, declare, given, json_of, list_of
 from amalthea_uros.report.wording.findings import joined, profile_name
 from amalthea_uros.services.check import CheckResult
 from amalthea_uros.services.diff import DiffResult
@@ -85,17 +85,10 @@ declare(
     RulesResult,
     (
         "rules",
-        lambda result: [
-            {
-                "id": rule.id,
-                "severity": rule.severity,
-                "effect": rule.effect,
-                "profile": profile_name(rule.id),
-                "title": rule.title,
-                "rationale": rule.rationale,
-                "remedy": rule.remedy,
-            }
-            for rule in result.rules
-        ],
+        list_of(
+            *("rules", "id", "severity", "effect"),
+            ("profile", lambda rule: profile_name(rule.id)),
+            *("title", "rationale", "remedy"),
+        ),
     ),
 )

@@ -13,7 +13,7 @@ from amalthea_uros.design.proposals import DesignProposal, LimitRow
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.report.documents.search import optimization_line, sweep_line
 from amalthea_uros.report.fields.analysis import summary_json
-from amalthea_uros.report.fields.declaration import ALSO, declare, json_of
+from amalthea_uros.report.fields.declaration import ALSO, declare, group, json_of, list_of
 from amalthea_uros.report.wording.findings import joined
 from amalthea_uros.services.optimize import Optimization
 
@@ -100,13 +100,11 @@ declare(
     "findings",
     (
         "space",
-        lambda result: {
-            "size": result.space.size,
-            "choices": [
-                {"key": choice.target, "kind": choice.kind, "options": choice.options} for choice in result.space.choices
-            ],
-            "orders": [{"scheduler": order.scheduler, "tasks": order.tasks} for order in result.space.orders],
-        },
+        group(
+            ("size", "space.size"),
+            ("choices", list_of("space.choices", ("key", "target"), "kind", "options")),
+            ("orders", list_of("space.orders", "scheduler", "tasks")),
+        ),
     ),
     ("goals", lambda result: [goal.name for goal in result.goals]),
     (
@@ -146,10 +144,7 @@ declare(
     ("model", "source"),
     "findings",
     ("changes", "differences"),
-    (
-        "sweeps",
-        lambda result: [{"key": f"{each.object}.{each.key}", "values": each.values} for each in result.plan.sweeps],
-    ),
+    ("sweeps", list_of("plan.sweeps", ("key", lambda each: f"{each.object}.{each.key}"), "values")),
     ("combinations", "plan.total"),
     ("seed", "plan.seed"),
     ("planned_variants", lambda result: len(result.plan.runs)),

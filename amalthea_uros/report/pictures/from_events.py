@@ -14,25 +14,17 @@ from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.report.pictures.chain_paths import ChainStep, DrawnPath
 from amalthea_uros.report.pictures.jobs import ON_CORE, CoreRows, Job, ProcessRow, RunnableSpan, State, StateSpan
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
+from amalthea_uros.trace.vocabulary import PROCESS
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-#: The state before and after each transition: BTF 2.3.0, state chart of processes. `None`: there is no job.
+#: The states of jobs by their words in the chart; after its end there is no job.
+_STATES = {state.value: state for state in State} | {"terminated": None}
+#: The state before and after each transition.
 _TRANSITIONS: Mapping[int, tuple[State | None, State | None]] = {
-    EventKind.ACTIVATE: (None, State.ACTIVE),
-    EventKind.START: (State.ACTIVE, State.RUNNING),
-    EventKind.PREEMPT: (State.RUNNING, State.READY),
-    EventKind.RESUME: (State.READY, State.RUNNING),
-    EventKind.TERMINATE: (State.RUNNING, None),
-    EventKind.POLL: (State.RUNNING, State.POLLING),
-    EventKind.RUN: (State.POLLING, State.RUNNING),
-    EventKind.PARK: (State.POLLING, State.PARKING),
-    EventKind.POLL_PARKING: (State.PARKING, State.POLLING),
-    EventKind.RELEASE_PARKING: (State.PARKING, State.READY),
-    EventKind.WAIT: (State.RUNNING, State.WAITING),
-    EventKind.RELEASE: (State.WAITING, State.READY),
+    kind: (_STATES[next(iter(before))], _STATES[after]) for kind, (before, after) in PROCESS.items() if after not in before
 }
 #: Those that tell where a job runs.
 _ALLOCATIONS = (EventKind.START, EventKind.RESUME, EventKind.RUN, EventKind.POLL_PARKING)

@@ -92,9 +92,31 @@ def priority_text(priority: int | None, is_isr: bool) -> str:
     return UNKNOWN if priority is None else f"{'ISR ' if is_isr else ''}{priority}"
 
 
-def load_text(load: Fraction, rounding: Rounding = Rounding.NEAREST) -> str:
+def load_text(load: Fraction | None, rounding: Rounding = Rounding.NEAREST) -> str:
     """A load in percent with four significant digits; bounds are rounded so that they remain bounds."""
-    return f"{number_text(rounded(load * 100, rounding, 100))} %"
+    return UNKNOWN if load is None else f"{number_text(rounded(load * 100, rounding, 100))} %"
+
+
+def load_cells(core: ProcessorResult) -> tuple[str, ...]:
+    """The name and the clock of a core, and its best, mean and worst load; of an unknown one the part that is known."""
+    is_partly_known = core.worst is None and core.at_least
+    return (
+        core.name,
+        frequency_text(core.frequency) if core.frequency else UNKNOWN,
+        load_text(core.best, Rounding.DOWN),
+        load_text(core.mean),
+        f"at least {load_text(core.at_least, Rounding.DOWN)}" if is_partly_known else load_text(core.worst, Rounding.UP),
+    )
+
+
+def limited_text(quantity: str, of: str) -> str:
+    """What is limited: a quantity, and of which object if it is of one."""
+    return f"{quantity} of {of}" if of else quantity
+
+
+def directed_limit(limit: str, *, is_upper: bool) -> str:
+    """A limit with its direction, such as "at most 1 ms"."""
+    return f"at {'most' if is_upper else 'least'} {limit}"
 
 
 def clock_text(least: Frequency) -> str:

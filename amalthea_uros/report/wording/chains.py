@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity, LatencyValue
 from amalthea_uros.analyze.results.explanations import CauseKind, LatencyCause, ProcessHop
+from amalthea_uros.report.wording.cells import at_least, at_most
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 #: The headline quantities: `reaction` and `data age` are what the limits of these names are compared with.
@@ -56,16 +57,16 @@ _LARGEST = 2
 
 def message_chain_row(chain: ChainResult) -> tuple[str, ...]:
     """The latency of a chain with a remark, in a row of a table."""
-    best, worst = _rounded_or_unknown(chain.best, Rounding.DOWN), _rounded_or_unknown(chain.worst, Rounding.UP)
+    best, worst = at_least(chain.best), at_most(chain.worst)
     return (chain.name, chain.start, chain.end, best, worst, remark(chain))
 
 
 def headline(chain: ChainResult) -> str:
     """The latency of a chain in a sentence."""
-    latency, best = f"Worst latency from {chain.start} to {chain.end}", _rounded_or_unknown(chain.best, Rounding.DOWN)
+    latency, best = f"Worst latency from {chain.start} to {chain.end}", at_least(chain.best)
     if chain.worst is None:
         return f"{latency}: unknown, at least {best}; {remark(chain)}"
-    return f"{latency}: {_rounded_or_unknown(chain.worst, Rounding.UP)} (bound), best {best}; {remark(chain)}"
+    return f"{latency}: {at_most(chain.worst)} (bound), best {best}; {remark(chain)}"
 
 
 def remark(chain: ChainResult) -> str:
@@ -73,11 +74,9 @@ def remark(chain: ChainResult) -> str:
     if chain.worst_if_not_lost is None:
         return f"{chain.reason}. {chain.remedy}" if chain.remedy else chain.reason
     if chain.loss:
-        return (
-            f"at most {_rounded_or_unknown(chain.worst_if_not_lost, Rounding.UP)} for messages that are not lost; {chain.loss}"
-        )
+        return f"at most {at_most(chain.worst_if_not_lost)} for messages that are not lost; {chain.loss}"
     largest = sorted(_largest_parts(chain), key=lambda part: -part[1])[:_LARGEST]
-    return f"most of it: {', '.join(f'{name} {_rounded_or_unknown(time, Rounding.UP)}' for name, time in largest)}"
+    return f"most of it: {', '.join(f'{name} {at_most(time)}' for name, time in largest)}"
 
 
 def _largest_parts(chain: ChainResult) -> Iterator[tuple[str, Time]]:
@@ -85,10 +84,6 @@ def _largest_parts(chain: ChainResult) -> Iterator[tuple[str, Time]]:
         owner = f"{hop.kind} {hop.name}"
         named = [(f"{part.name} ({owner})", part.most) for part in hop.parts if part.most is not None and part.most > 0]
         yield from named or [(owner, hop.worst or 0)]
-
-
-def _rounded_or_unknown(value: Time | None, rounding: Rounding) -> str:
-    return "unknown" if value is None else rounded_time_text(value, rounding)
 
 
 def cause_text(cause: LatencyCause, hop: ProcessHop) -> str:

@@ -12,6 +12,7 @@ from amalthea_uros.analyze.results.processes import ProcessorResult, Requirement
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure
+from amalthea_uros.report.wording.cells import directed_limit, limited_text
 from amalthea_uros.timing.activation.load import unit_hint
 from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
 
@@ -76,11 +77,11 @@ def _failure(item: Judged) -> str:
 
 
 def _violation(requirement: RequirementResult) -> str:
-    what = f"{requirement.quantity} of {requirement.object}" if requirement.object else requirement.quantity
+    what = limited_text(requirement.quantity, requirement.object)
     if requirement.limit is None:
         return f"{what} violates {requirement.name}"
     ends = Ends(requirement.lower, requirement.upper)
-    limit = f"limit {'at most' if requirement.is_upper else 'at least'} {time_text(requirement.limit)}"
+    limit = f"limit {directed_limit(time_text(requirement.limit), is_upper=requirement.is_upper)}"
     return f"{what} is {_ends_text(ends, requirement.is_upper)}, {limit}" + (
         f" ({requirement.reason})" if requirement.reason else ""
     )

@@ -5,64 +5,28 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from functools import cache
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
 
 from amalthea_uros._internal.compiled import machine_code
 from amalthea_uros._internal.machine_code import LOADING, CompilationEffort
-from amalthea_uros.simulate.kernel import (
-    activation,
-    agent,
-    budgets,
-    conditions,
-    cores,
-    flows,
-    host_queues,
-    host_threads,
-    iterations,
-    jobs,
-    layout,
-    loop,
-    losses,
-    message_records,
-    messages,
-    occurrences,
-    reading,
-    reports,
-    stages,
-    waiting,
-    wires,
-)
+from amalthea_uros.simulate import kernel
+from amalthea_uros.simulate.kernel import layout, loop
 from amalthea_uros.simulate.kernel.layout import Memory
 from amalthea_uros.simulate.kernel.loop import run_kernel
 
 #: Runs until something needs the driver, as `kernel.loop.run_kernel` does.
 CompiledKernel: TypeAlias = Callable[[Memory], int]
 
-_MODULES = (
-    activation,
-    agent,
-    budgets,
-    conditions,
-    cores,
-    flows,
-    host_queues,
-    host_threads,
-    iterations,
-    jobs,
-    loop,
-    losses,
-    message_records,
-    messages,
-    occurrences,
-    reading,
-    reports,
-    stages,
-    waiting,
-    wires,
+#: All modules of the kernel but the layout of its memory, which has no functions of it, and this one.
+_MODULES = tuple(
+    import_module(f"{kernel.__name__}.{module.name}")
+    for module in iter_modules(kernel.__path__)
+    if module.name not in ("layout", "machine_code")
 )
-
 
 #: Seconds after which the speed of a run is known, and about how long numba takes to compile the kernel.
 _KNOWN, _COMPILING = 0.2, 25.0
@@ -97,8 +61,8 @@ def compiled() -> CompiledKernel:
         namespace.update({name: machine[value] for name, value in namespace.items() if _is_in(value, machine)})
     names = {"__name__": __name__, "run_kernel": namespaces[loop]["run_kernel"], "_numbers_of": _address()}
     # numba knows the file of this function, by which it names what it keeps.
-    kernel = FunctionType(_run.__code__, names, "run")
-    return machine_code(kernel, (int64[::1],), effort().sources)
+    run = FunctionType(_run.__code__, names, "run")
+    return machine_code(run, (int64[::1],), effort().sources)
 
 
 def _run(memory: Memory) -> int:

@@ -74,11 +74,6 @@ class SchedulingContext:
     order_gap: OrderGap | None = None
     place: StatedPlace | None = None
 
-    @property
-    def urgency(self) -> Rank:
-        """The rank, followed by the deadline under EDF."""
-        return (*self.rank, -(self.deadline or 0)) if self.equal_priority is EqualPriority.EDF else self.rank
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScheduledProcess(SchedulingContext):

@@ -38,7 +38,7 @@ _CONSOLE = re.compile(
     rf"(?:\(([^)]*)\) +)?(\S+) +(?:[RT]X +[B-] [E-] +)?{_IDENTIFIER} +(?:\[(\d+)\]|\{{[9A-Fa-f]\}}) *(.*)", re.DOTALL
 )
 _CONSOLE_DATA = re.compile(r"((?:(?:[01]{8}|[0-9A-Fa-f]{2})(?:[ `]|$))*) *(?:ERRORFRAME|['`].*)?", re.DOTALL)
-_DROPPED = re.compile(r"DROPCOUNT: dropped (\d+) CAN frames? on '([^',]*)[^']*' socket \(total drops -?\d+\)")
+_DROPPED = re.compile(r"DROPCOUNT: dropped \d+ CAN frames? on '([^',]*)[^']*' socket \(total drops -?\d+\)")
 _DATA = re.compile(rf"{_IDENTIFIER}#({_HEX})(?:_[9A-Fa-f])?")
 _REMOTE = re.compile(rf"{_IDENTIFIER}#R[0-8]?(?:_[9A-Fa-f])?")
 _FD = re.compile(rf"{_IDENTIFIER}##[0-9A-Fa-f]({_HEX})")
@@ -70,20 +70,13 @@ class Stamp:
 
 @dataclass(frozen=True, slots=True)
 class CandumpLine:
-    """What a line says.
-
-    Attributes
-    ----------
-    stamp : None if it has none, as lost frames do
-    lost : of a gap: the number of frames that are lost
-    """
+    """What a line says; lost frames have no time stamp."""
 
     stamp: Stamp | None
     channel: str
     identifier: int
     kind: FrameKind
     data: bytes = b""
-    lost: int = 0
 
 
 def parse(text: str) -> CandumpLine:
@@ -102,7 +95,7 @@ def parse(text: str) -> CandumpLine:
         length = _CLASSIC if match[4] is None else int(match[4][:5])
         return CandumpLine(stamp_of(match[1]), match[2], *_console_frame(match[3], length, match[5]))
     if match := _DROPPED.fullmatch(text):
-        return CandumpLine(None, match[2], 0, FrameKind.GAP, lost=int(match[1][:18]))
+        return CandumpLine(None, match[1], 0, FrameKind.GAP)
     raise UnreadableError(_NOT_A_FRAME)
 
 

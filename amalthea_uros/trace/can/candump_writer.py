@@ -24,7 +24,7 @@ _WORDS = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"]
 
 
 class CandumpEncoder(Encoder):
-    """Makes the lines of a log; it has no options."""
+    """Makes the lines of a log."""
 
     def encode(self, table: EventTable) -> bytes:
         """The lines of the starts and ends among some events."""

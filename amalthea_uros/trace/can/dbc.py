@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 _MILLISECOND = 10**9
 _CYCLE_TIME = "GenMsgCycleTime"
-#: Stands for a sender or receiver that is not known.
-_NOBODY = "Vector__XXX"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,14 +34,12 @@ class DbcSignal:
     Attributes
     ----------
     bits : of the raw value
-    unit : "" if none is stated
     """
 
     name: str
     bits: int
     scale: Fraction
     offset: Fraction
-    unit: str
     _decode: Callable[[bytes], Mapping[str, Any]] = field(repr=False, compare=False)
 
     def raw(self, data: bytes) -> Fraction | None:
@@ -65,15 +61,12 @@ class DbcMessage:
     ----------
     identifier : as in a table of frames: with the bit `EXTENDED` if it has 29 bits
     length : of the payload in bytes
-    senders, receivers : the nodes, as far as they are stated
     cycle_time : picoseconds; None if none is stated for this message: the default of the file holds for messages without a cycle, too
     """
 
     name: str
     identifier: int
     length: int
-    senders: tuple[str, ...]
-    receivers: tuple[str, ...]
     cycle_time: Time | None
     signals: Mapping[str, DbcSignal]
 
@@ -143,15 +136,13 @@ def _message(message: CantoolsMessage) -> DbcMessage:
         name=message.name,
         identifier=message.frame_id | (EXTENDED if message.is_extended_frame else 0),
         length=message.length,
-        senders=tuple(sender for sender in message.senders if sender != _NOBODY),
-        receivers=tuple(sorted(receiver for receiver in message.receivers if receiver != _NOBODY)),
         cycle_time=_cycle_time(message),
         signals={signal.name: _signal(signal, decode) for signal in message.signals},
     )
 
 
 def _signal(signal: CantoolsSignal, decode: Callable[[bytes], Mapping[str, Any]]) -> DbcSignal:
-    return DbcSignal(signal.name, signal.length, _exact(signal.scale), _exact(signal.offset), signal.unit or "", decode)
+    return DbcSignal(signal.name, signal.length, _exact(signal.scale), _exact(signal.offset), decode)
 
 
 def _decoder(message: CantoolsMessage) -> Callable[[bytes], Mapping[str, Any]]:

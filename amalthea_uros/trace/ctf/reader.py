@@ -13,10 +13,10 @@ from amalthea_uros.trace.ctf.metadata import Metadata, read_metadata
 from amalthea_uros.trace.ctf.ros2 import Ros2
 from amalthea_uros.trace.ctf.streams import CtfEvent, PacketStream
 from amalthea_uros.trace.files import METADATA, TracePlace, TraceProblems, UnreadableError, stream_files, trace_folders
-from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
+from amalthea_uros.trace.reading import BLOCK, EventRows, TraceReader
 from amalthea_uros.trace.schedulers.thread_log import UniqueNames
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates
-from amalthea_uros.trace.table import NO_NOTE, EventKind
+from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
 
 
 class CtfReader(TraceReader):
@@ -45,8 +45,8 @@ class CtfReader(TraceReader):
         """The problems so far."""
         return tuple(finding for problems in (*self._of_files, self._problems) for finding in problems.findings)
 
-    def numbered(self) -> Iterator[NumberedTable]:
-        """The events, with the number of each in the order of the trace in the place of the line.
+    def __iter__(self) -> Iterator[EventTable]:
+        """The events, in consecutive tables.
 
         Raises
         ------
@@ -64,22 +64,22 @@ class CtfReader(TraceReader):
             for path in stream_files(folder)
         ]
         for number, event in enumerate(merge(*streams, key=lambda each: each.time), 1):
-            self._add(event, number, interpreters)
+            self._add(event, interpreters)
             if number % BLOCK == 0 and (table := self._states.take()) is not None:
                 yield table
         if (table := self._states.take(is_end=True)) is not None:
             yield table
 
-    def _add(self, event: CtfEvent, number: int, interpreters: dict[str, Interpreter]) -> None:
+    def _add(self, event: CtfEvent, interpreters: dict[str, Interpreter]) -> None:
         if not event.name:
-            if self._rows.move_to(event.time, number, TracePlace()):
+            if self._rows.move_to(event.time, TracePlace()):
                 self._states.lose(lost=NO_NOTE if event.lost is None else event.lost)
             self._lose()
             return
         interpreter = interpreters.get(event.name)
         if interpreter is None:
             return
-        if self._rows.move_to(event.time, number, TracePlace()):
+        if self._rows.move_to(event.time, TracePlace()):
             interpreter.add(event)
         else:
             self._states.lose()

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.files import TracePlace, opened_text
-from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable, TraceReader
+from amalthea_uros.trace.reading import BLOCK, EventRows, TraceReader
 from amalthea_uros.trace.schedulers.thread_states import ThreadStates
-from amalthea_uros.trace.table import NO_NOTE, EntityKind
+from amalthea_uros.trace.table import NO_NOTE, EntityKind, EventTable
 
 _SECOND = 12
 _NUMBER = re.compile(r"([+-]?)([0-9]{1,30})(?:\.([0-9]{1,30}))?")
@@ -29,8 +29,8 @@ class ThreadLogReader(TraceReader):
         self._names = UniqueNames()
         self._place = TracePlace()
 
-    def numbered(self) -> Iterator[NumberedTable]:
-        """The events, with the number of the line of each."""
+    def __iter__(self) -> Iterator[EventTable]:
+        """The events, in consecutive tables."""
         with opened_text(self._path, self._problems) as stream:
             for number, line in enumerate(stream, 1):
                 text = line.rstrip("\r\n")
@@ -67,7 +67,7 @@ class ThreadLogReader(TraceReader):
 
     def _move_to(self, time: int) -> bool:
         """Whether an event can be at a time; without it, what is open cannot go on."""
-        is_in_order = self._rows.move_to(time, self._place.line or 0, self._place)
+        is_in_order = self._rows.move_to(time, self._place)
         if not is_in_order:
             self._states.lose()
         return is_in_order

@@ -13,8 +13,8 @@ from enum import Enum
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.trace.files import TracePlace, TraceProblems
-from amalthea_uros.trace.reading import BLOCK, EventRows, NumberedTable
-from amalthea_uros.trace.table import NO_NOTE, EventKind
+from amalthea_uros.trace.reading import BLOCK, EventRows
+from amalthea_uros.trace.table import NO_NOTE, EventKind, EventTable
 
 #: So many rows wait at most for the event that decides about one of them.
 _MOST_UNDECIDED = 8 * BLOCK
@@ -83,7 +83,7 @@ class ThreadStates:
         self._undecided: dict[int, _TracedThread] = {}
         self._executions: dict[int, int] = {}
 
-    def take(self, is_end: bool = False) -> NumberedTable | None:
+    def take(self, is_end: bool = False) -> EventTable | None:
         """The events that are decided, if there are enough of them or no more come."""
         count = len(self._rows)
         if not is_end:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Sequence
 
-from amalthea_uros.trace.sinks import WriteOptions
 from amalthea_uros.trace.table import Entity
 from amalthea_uros.trace.viewers.timeline import FIRST_TRACK, GROUPS, TimelineEncoder, TrackChange, TrackMark
 
@@ -48,8 +47,8 @@ class _Track:
 class ChromeEncoder(TimelineEncoder):
     """Makes the JSON. What the format calls processes are the groups of tracks, and each track is a thread of one."""
 
-    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
-        super().__init__(entities, options)
+    def __init__(self, entities: Sequence[Entity]) -> None:
+        super().__init__(entities)
         self._tracks: dict[int, _Track] = {}
         #: The fields that do not depend on the time, by track, state and entity.
         self._places: dict[tuple[int, str, int], str] = {}

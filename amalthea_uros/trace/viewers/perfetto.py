@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from amalthea_uros.trace.sinks import WriteOptions
 from amalthea_uros.trace.table import Entity
 from amalthea_uros.trace.viewers.timeline import (
     FIRST_TRACK,
@@ -82,8 +81,8 @@ _STATES = {state: number for number, state in enumerate(SHOWN_STATES, 1)}
 class PerfettoEncoder(TimelineEncoder):
     """Makes the packets of a Perfetto file."""
 
-    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
-        super().__init__(entities, options)
+    def __init__(self, entities: Sequence[Entity]) -> None:
+        super().__init__(entities)
         self._tracks: set[int] = set()
         self._names: set[int] = set()
         self._events: dict[tuple[object, ...], bytes] = {}

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
-from amalthea_uros.trace.sinks import Encoder, WriteOptions
+from amalthea_uros.trace.sinks import Encoder
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.trace.vocabulary import ENTERING, LEAVING, ON_CORE, PROCESS
 
@@ -185,10 +185,10 @@ FIRST_TRACK = 16
 
 
 class TimelineEncoder(Encoder):
-    """Makes the bytes of a format that shows slices and marks on tracks; it has no options."""
+    """Makes the bytes of a format that shows slices and marks on tracks."""
 
-    def __init__(self, entities: Sequence[Entity], options: WriteOptions) -> None:
-        super().__init__(entities, options)
+    def __init__(self, entities: Sequence[Entity]) -> None:
+        super().__init__(entities)
         self._timeline = Timeline()
 
     def encode(self, table: EventTable) -> bytes:

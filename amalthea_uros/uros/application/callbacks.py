@@ -136,7 +136,7 @@ def _callback(
     distribution: str | None,
     notes: Notes,
 ) -> Callback | None:
-    executor, in_executor = serving.place(section, node, is_of_middleware=kind in _OF_MIDDLEWARE)
+    executor, in_executor = serving.place(section, node, is_of_middleware=kind in OF_MIDDLEWARE)
     needs_interval = not _may_be_unknown(section, kind) or executor.loop is None
     interval = _interval(section, needs_interval, notes)
     outgoing = tuple(outgoing_messages(section, node, nodes, interval or SECOND, notes))
@@ -153,19 +153,19 @@ def _callback(
         incoming=incoming,
         outgoing=outgoing,
         buffer=(section.buffer or f"{section.name}_message") if incoming and isinstance(section, MessageCallback) else None,
-        handles=_handles(kind, node, distribution),
+        handles=handle_count(kind, node, distribution),
     )
 
 
 #: What the executor serves without a callback of the application.
-_OF_MIDDLEWARE = (HandleKind.PARAMETER_SERVICE, HandleKind.LIFECYCLE_SERVICE)
+OF_MIDDLEWARE = (HandleKind.PARAMETER_SERVICE, HandleKind.LIFECYCLE_SERVICE)
 
 
 def _may_be_unknown(section: CallbackSection, kind: HandleKind) -> bool:
     """Whether a callback can do without an interval: nothing else of known rate follows from it."""
     if kind is HandleKind.GUARD_CONDITION:
         return not section.publishes and not section.requests
-    return kind in _OF_MIDDLEWARE
+    return kind in OF_MIDDLEWARE
 
 
 def interval_of_rate(rate: Frequency) -> Time:
@@ -226,7 +226,8 @@ def body_name(callback: str) -> str:
     return f"{callback}_Callback"
 
 
-def _handles(kind: HandleKind, node: NodeSection, distribution: str | None) -> int:
+def handle_count(kind: HandleKind, node: NodeSection, distribution: str | None) -> int:
+    """The number of handles that a callback, or a service of the middleware, has in its executor."""
     if kind is HandleKind.PARAMETER_SERVICE:
         return parameter_services(distribution)
     if kind is HandleKind.LIFECYCLE_SERVICE:

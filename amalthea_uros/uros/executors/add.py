@@ -9,7 +9,7 @@ from amalthea_uros.executors.semantics.readiness import others_of_thread
 from amalthea_uros.perf.activities import Demand, Execute
 from amalthea_uros.perf.distributions import Boundaries, lowest
 from amalthea_uros.perf.executors import Executor, Handle, LoopKind, ThreadLoop, WaitBehaviour
-from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.software import UNLIMITED, Runnable
 from amalthea_uros.spec import executors as spec
 from amalthea_uros.spec.loops import LoopSection
 from amalthea_uros.spec.os import OsSection
@@ -24,9 +24,6 @@ from amalthea_uros.uros.executors.handles import handle_names, handles_of, trigg
 from amalthea_uros.uros.executors.iterations import has_one_message_per_iteration, iteration_activities, polls_before_timers
 from amalthea_uros.uros.executors.sleeps import slept
 from amalthea_uros.uros.executors.threads import ThreadItems
-
-#: Iterations are executed one after the other, however many are due.
-_UNLIMITED = 1_000_000
 
 
 def add_looping_executor(
@@ -72,7 +69,7 @@ def add_looping_executor(
             period=min((each.min_interval for each in of_thread if each.interval is not None), default=None),
             priority=section.priority,
             deadline=section.deadline,
-            activation_limit=1 if executor.loop.sleep and not executor.loop.pace else _UNLIMITED,
+            activation_limit=1 if executor.loop.sleep and not executor.loop.pace else UNLIMITED,
             overhead=section.overhead,
             wins_ties=True,
             thread="" if executor.place is None else executor.place.thread,

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import takewhile
 
-from amalthea_uros._internal.plural import counted
+from amalthea_uros._internal.plural import counted, enumerated
 from amalthea_uros.executors.semantics.loops import is_paced, iterations_follow_at_once
 from amalthea_uros.executors.semantics.readiness import messages
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, TriggerKind
@@ -116,9 +116,11 @@ def _check_one(executor: Executor, section: spec.ExecutorSection, notes: Notes) 
     if any(handle.kind in _ACTIONS for handle in own):
         message = f"the trigger condition 'one' of {executor.name!r} does not know actions, so that it is never true"
         notes.warning("EXE004", message, location, "Use 'custom' with a trigger function of your own.")
-    elif actions := [handle.name for handle in before if handle.kind in _ACTIONS]:
-        message = f"the trigger condition 'one' of {executor.name!r} is false whenever {_listed(actions)} is ready, an action before it"
-        notes.warning("EXE004", message, location, f"Add {_listed(sorted(waited_for))} to the executor before the actions.")
+    elif actions := [repr(handle.name) for handle in before if handle.kind in _ACTIONS]:
+        what = f"whenever {enumerated(actions)} is ready, an action before it"
+        message = f"the trigger condition 'one' of {executor.name!r} is false {what}"
+        advice = f"Add {enumerated(sorted(map(repr, waited_for)))} to the executor before the actions."
+        notes.warning("EXE004", message, location, advice)
 
 
 def _check_guard_conditions(executor: Executor, section: spec.ExecutorSection, notes: Notes) -> None:
@@ -152,10 +154,10 @@ def check_threads(executors: Iterable[str], sending_tasks: Sequence[Callback], m
     executors : names of those with loops
     sending_tasks : callbacks with tasks of their own that send messages
     """
-    threads = [*executors, *(callback.name for callback in sending_tasks)]
+    threads = [*map(repr, executors), *(repr(callback.name) for callback in sending_tasks)]
     if len(threads) < 2:
         return
-    message = f"{_listed(threads)} use the session of the middleware from several threads, but nothing locks it"
+    message = f"{enumerated(threads)} use the session of the middleware from several threads, but nothing locks it"
     advice = "Build with UCLIENT_PROFILE_MULTITHREAD=ON and set 'multithread: true', or let one executor run all callbacks."
     notes.warning("EXE008", message, middleware.location("multithread") or middleware.location(), advice)
 
@@ -166,8 +168,3 @@ def check_order(section: spec.ExecutorSection, notes: Notes) -> None:
         if name in section.order[:index]:
             message = f"{name!r} occurs twice in 'order' of {section.name!r}; the first place counts"
             notes.warning("EXE009", message, section.location("order", index), "Remove one of them.")
-
-
-def _listed(names: Sequence[str]) -> str:
-    quoted = [repr(name) for name in names]
-    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"

@@ -7,21 +7,20 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from amalthea_uros._internal.message_types import LengthBounds, MessageType, length_of
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.perf.executors import Executor
+from amalthea_uros.perf.executors import Executor, HandleKind
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.spec.application import (
     ActionClient,
     ActionServer,
     CallbackSection,
     Client,
-    GuardCondition,
     NodeSection,
     Publisher,
     ServiceSection,
     Subscription,
-    Timer,
 )
 from amalthea_uros.spec.message_types import TypedMessage
+from amalthea_uros.uros.application.callbacks import OF_MIDDLEWARE, sections_of
 
 #: The package of the types that stand for those that a description does not state.
 STAND_INS = "amuros_types"
@@ -131,17 +130,19 @@ class CodeEntities:
         self.nodes = {node.name: self.names.of("node", node.name) for node in nodes}
         self.publishers = [self._publisher(node, each) for node in nodes for each in node.publishers]
         self._clients: dict[tuple[str, str], CodeHandler] = {}
-        sections = {each.name: (node, each) for node in nodes for each in _callbacks(node)}
-        for name, (node, section) in sections.items():
+        sections = {
+            each.name: (node, kind, each) for node in nodes for kind, each in sections_of(node) if kind not in OF_MIDDLEWARE
+        }
+        for name, (node, kind, section) in sections.items():
             if isinstance(section, Client):
-                self._clients[node.name, name] = self._handler(node, section)
+                self._clients[node.name, name] = self._handler(node, kind, section)
         self.handlers: dict[str, list[CodeHandler]] = {}
         for executor in executors:
             created = self.handlers.setdefault(executor.name, [])
             for handle in executor.handles:
                 if handle.name in sections:
-                    node, section = sections[handle.name]
-                    own = self._clients.get((node.name, handle.name)) or self._handler(node, section)
+                    node, kind, section = sections[handle.name]
+                    own = self._clients.get((node.name, handle.name)) or self._handler(node, kind, section)
                     created.append(own)
                 elif not any(each.kind == "parameter_server" for each in created):
                     created.append(self._server(nodes, handle.name))
@@ -199,8 +200,8 @@ class CodeEntities:
         self.stand_ins[f"{STAND_INS}/{kind}/{title}.{kind}"] = "\n---\n".join(fields) + "\n"
         return MessageType(STAND_INS, kind, title)
 
-    def _handler(self, node: NodeSection, section: CallbackSection) -> CodeHandler:
-        kind = _KINDS[type(section)]
+    def _handler(self, node: NodeSection, role: HandleKind, section: CallbackSection) -> CodeHandler:
+        kind = role.replace(" ", "_")
         messages: tuple[CodeMessage, ...] = ()
         match section:
             case Subscription():
@@ -248,29 +249,6 @@ _RECEIVED: dict[type[TypedMessage], tuple[str, ...]] = {
     ActionServer: ("SendGoal_Request",),
     ActionClient: ("GetResult_Response", "FeedbackMessage"),
 }
-_KINDS: dict[type[CallbackSection], str] = {
-    Subscription: "subscription",
-    Timer: "timer",
-    ServiceSection: "service",
-    Client: "client",
-    GuardCondition: "guard_condition",
-    ActionServer: "action_server",
-    ActionClient: "action_client",
-}
-
-
-def _callbacks(node: NodeSection) -> Iterator[CallbackSection]:
-    groups: tuple[Sequence[CallbackSection], ...] = (
-        node.subscriptions,
-        node.timers,
-        node.services,
-        node.clients,
-        node.guard_conditions,
-        node.action_servers,
-        node.action_clients,
-    )
-    for group in groups:
-        yield from group
 
 
 def open_types(nodes: Sequence[NodeSection]) -> Iterator[tuple[TypedMessage, str]]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
+from amalthea_uros._internal.ports import known_ports
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.units import Time
@@ -35,39 +37,15 @@ class CodePort(Brief):
     ticks: str = ""
 
 
-def _freertos(*headers: str, wait: str = "", stack_unit: int = 4, ticks: str = "") -> CodePort:
-    sleep = "vTaskDelay(pdMS_TO_TICKS({ms}));"
-    return CodePort(headers=headers, sleep=sleep, wait=wait, threads="freertos", stack_unit=stack_unit, ticks=ticks)
-
-
-def _arduino(*headers: str) -> CodePort:
-    return CodePort(headers=headers, sleep="delay({ms});", wait="delayMicroseconds({us});", entry="arduino", suffix="cpp")
-
-
-_PORTS: Mapping[str, CodePort] = {
-    "arduino": _arduino("micro_ros_arduino.h"),
-    "platformio": _arduino("Arduino.h", "micro_ros_platformio.h"),
-    "espidf": _freertos(
-        *("freertos/FreeRTOS.h", "freertos/task.h", "esp_rom_sys.h"),
-        wait="esp_rom_delay_us({us});",
-        stack_unit=1,
-        ticks="CONFIG_FREERTOS_HZ",
-    ),
-    "zephyr": CodePort(
-        headers=("zephyr/kernel.h",), sleep="k_sleep(K_USEC({us}));", wait="k_busy_wait({us});", threads="zephyr"
-    ),
-    "cubemx": _freertos("cmsis_os.h", "main.h", wait="HAL_Delay({ms});"),
-    "renesas": _freertos("hal_data.h", "FreeRTOS.h", "task.h"),
-    "freertos": _freertos("FreeRTOS.h", "task.h"),
-    "pico-sdk": CodePort(headers=("pico/stdlib.h",), sleep="sleep_us({us});", wait="busy_wait_us({us});"),
-    "nuttx": CodePort(headers=("nuttx/config.h", "unistd.h")),
-}
-_OF_SYSTEMS = {"freertos": "freertos", "zephyr": "zephyr", "nuttx": "nuttx"}
+#: Operating systems with a port of their name, built by micro_ros_setup or as a module.
+_AS_PORTS = ("freertos", "zephyr", "nuttx")
 
 
 def code_port(port: str | None, rtos: str | None) -> CodePort:
-    """The code of a port, or of the operating system if no port is stated."""
-    return _PORTS.get(port or _OF_SYSTEMS.get(rtos or "", ""), CodePort(headers=("unistd.h",)))
+    """The code of a port, or of the operating system if no port is stated; else that of a POSIX system."""
+    known = known_ports().get(port or (rtos if rtos in _AS_PORTS else ""))
+    facts: Mapping[str, Any] = {"headers": ["unistd.h"]} if known is None else known.code
+    return CodePort(**{**facts, "headers": tuple(facts["headers"])})
 
 
 def waiting(template: str, time: Time) -> str | None:

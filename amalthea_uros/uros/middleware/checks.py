@@ -5,14 +5,15 @@ Until they are acknowledged, reliable messages keep buffers, and with most middl
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 
 from amalthea_uros._internal.ports import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, parameter_services
-from amalthea_uros.spec.application import Application, CallbackSection, MessageCallback, NodeSection, Subscription
+from amalthea_uros.perf.executors import HandleKind
+from amalthea_uros.spec.application import Application, CallbackSection, MessageCallback, Subscription
 from amalthea_uros.spec.executors import ExecutorSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import Time, time_text
-from amalthea_uros.uros.application.callbacks import Callback
+from amalthea_uros.uros.application.callbacks import Callback, sections_of
 from amalthea_uros.uros.application.messages import LONGEST, Message
 from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.middleware.profile import Profile
@@ -208,16 +209,11 @@ def depth_of(section: CallbackSection) -> int | None:
 
 def kept_messages(application: Application, middleware: Middleware) -> int:
     """The most messages that the histories of an application keep together."""
-    receivers = (each for node in application.nodes for each in _receivers(node, middleware))
-    return sum(count * (depth_of(section) or 0) for section, count in receivers)
-
-
-def _receivers(node: NodeSection, middleware: Middleware) -> Iterator[tuple[CallbackSection, int]]:
-    """The callbacks with messages of a node, with the entities that receive them."""
-    yield from ((section, 1) for section in (*node.subscriptions, *node.services, *node.clients))
-    yield from ((section, ACTION_SERVICES) for section in node.action_servers)
-    yield from ((section, ACTION_SERVICES + ACTION_TOPICS) for section in node.action_clients)
-    if node.parameter_server is not None:
-        yield MessageCallback.model_construct(), parameter_services(middleware.ros)
-    if node.lifecycle is not None:
-        yield MessageCallback.model_construct(), LIFECYCLE_SERVICES
+    several = {
+        HandleKind.ACTION_SERVER: ACTION_SERVICES,
+        HandleKind.ACTION_CLIENT: ACTION_SERVICES + ACTION_TOPICS,
+        HandleKind.PARAMETER_SERVICE: parameter_services(middleware.ros),
+        HandleKind.LIFECYCLE_SERVICE: LIFECYCLE_SERVICES,
+    }
+    sections = (each for node in application.nodes for each in sections_of(node))
+    return sum(several.get(kind, 1) * (depth_of(section) or 0) for kind, section in sections)

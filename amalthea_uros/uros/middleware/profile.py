@@ -15,7 +15,7 @@ from amalthea_uros.perf.executors import WaitBehaviour
 from amalthea_uros.perf.named import Brief
 from amalthea_uros.perf.network import Direction, Recovery
 from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.middleware import Middleware, MiddlewareTask
+from amalthea_uros.spec.middleware import Middleware, MiddlewareTask, PoolSizes
 from amalthea_uros.spec.profiles import ProfileData, ThreadData
 from amalthea_uros.units import DataSize, Time
 from amalthea_uros.uros.application.messages import MessageKind
@@ -147,6 +147,14 @@ class Profile(ABC):
         """The same middleware with other settings."""
         return replace(self, middleware=middleware)
 
+    def with_options(self, values: Mapping[str, int]) -> Self:
+        """The same middleware with other values of build options, as far as a description can state them."""
+        stated = {
+            name: self.option_table[name].described(value) for name, value in values.items() if name in PoolSizes.model_fields
+        }
+        limits = self.middleware.limits.model_copy(update=stated)
+        return self.configured(self.middleware.model_copy(update={"limits": limits}))
+
     @property
     def name(self) -> str:
         """Its name."""
@@ -198,14 +206,14 @@ class Profile(ABC):
         return (*known, *(_thread(ThreadData(name=task.name, does="receives messages"), task) for task in tasks.values()))
 
     @property
-    @abstractmethod
     def slots(self) -> int | None:
         """The number of messages that can be stored for all handles together; None for no limit."""
+        return None
 
     @property
-    @abstractmethod
     def slot_size(self) -> int | None:
         """Bytes of memory that each of these slots takes; None without slots."""
+        return None
 
     @property
     @abstractmethod
@@ -222,14 +230,14 @@ class Profile(ABC):
         return None
 
     @property
-    @abstractmethod
     def recovery(self) -> Recovery | None:
-        """How reliable messages that were lost are sent again; None if it does not care for losses."""
+        """How reliable messages that were lost are sent again; None if it leaves that to the transport."""
+        return None
 
     @property
-    @abstractmethod
     def buffers(self) -> int | None:
         """The number of buffers in which reliable messages wait for their acknowledgement, a part in each; None for no limit."""
+        return None
 
     @property
     @abstractmethod

@@ -22,7 +22,7 @@ from amalthea_uros.perf.distributions import Boundaries, Constant
 from amalthea_uros.perf.events import Event, RunnableChange, RunnableEvent
 from amalthea_uros.perf.hardware import Core
 from amalthea_uros.perf.mapping import TaskAllocation
-from amalthea_uros.perf.software import Preemption, Task
+from amalthea_uros.perf.software import UNLIMITED, Preemption, Task
 from amalthea_uros.perf.stimuli import Burst, Counter, EventTriggered, Periodic, RelativePeriodic, Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.transports import Can, TransportSection
@@ -33,7 +33,7 @@ from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.assembly.context import AssemblyContext, add_isr
 from amalthea_uros.uros.middleware.profile import Profile
 from amalthea_uros.uros.network.queueing import runs_per_message
-from amalthea_uros.uros.network.wires import UNLIMITED, WireCores, free_name, with_cores
+from amalthea_uros.uros.network.wires import WireCores, free_name, with_cores
 from amalthea_uros.uros.transports.can import (
     FRAME_BYTES,
     GREATEST_STANDARD,

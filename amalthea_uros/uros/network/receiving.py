@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.activities import Activity, Call, Demand, Execute, Trigger
 from amalthea_uros.perf.network import Direction
-from amalthea_uros.perf.software import Runnable
+from amalthea_uros.perf.software import UNLIMITED, Runnable
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.middleware import MiddlewareTask
@@ -23,9 +23,6 @@ from amalthea_uros.uros.assembly.planned import PlannedTask, activity_sequence, 
 from amalthea_uros.uros.middleware.profile import MiddlewareThread
 from amalthea_uros.uros.transports.line import receive_interrupt
 from amalthea_uros.uros.transports.messages import WireMessage
-
-#: No message is lost between the wire and a task of the middleware.
-_UNLIMITED = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +118,7 @@ def _add_thread(
             activities=(Call(runnable=body.name), *_triggers(triggers)),
             period=min(message.interval - message.jitter for message in messages),
             priority=middleware.stated_executors[0].priority if priority is None else priority,
-            activation_limit=_UNLIMITED,
+            activation_limit=UNLIMITED,  # no message is lost between the wire and the task
             origin=origin,
         )
     )

@@ -20,7 +20,7 @@ from amalthea_uros.perf.hardware import Clock, Core, CoreType, Structure
 from amalthea_uros.perf.mapping import TaskAllocation
 from amalthea_uros.perf.network import Direction, Losses, Network, Purpose, Recovery, Wire
 from amalthea_uros.perf.os import OperatingSystem, Policy, Scheduler
-from amalthea_uros.perf.software import Preemption, Runnable, Task
+from amalthea_uros.perf.software import UNLIMITED, Preemption, Runnable, Task
 from amalthea_uros.perf.stimuli import Stimulus
 from amalthea_uros.perf.system import System
 from amalthea_uros.spec.transports import Can, CanFd
@@ -30,8 +30,6 @@ from amalthea_uros.uros.transports.can import BusLine, arbitration_rank
 from amalthea_uros.uros.transports.framing import BYTES, ESCAPED
 from amalthea_uros.uros.transports.line import Frame, Line
 
-#: A message waits until the wire is free, however many of its kind are queued before it.
-UNLIMITED = 1_000_000
 #: The type of the cores.
 _TYPE = "Wire"
 #: Loses the arbitration against all identifiers.

@@ -87,11 +87,6 @@ def max_message_bits(bus: CanBus, message_bytes: int) -> int:
     return frames(message_bytes) * bus.max_frame_bits(FRAME_BYTES)
 
 
-def transmission_time(bus: CanBus, message_bytes: int) -> Time:
-    """Maximum transmission time of a message, without waiting for the bus."""
-    return bus.duration(max_message_bits(bus, message_bytes))
-
-
 def block_bytes(length: int) -> list[tuple[int, int]]:
     """Minimum and maximum data bytes of the frames of a message: a transport may pad the last block."""
     full, rest = divmod(max(1, length) - 1, BLOCK_BYTES)

@@ -43,7 +43,7 @@ def middleware(**content):
 
 def mistakes(folder, profile):
     with pytest.raises(ReadError) as caught:
-        profile_of(Middleware(profile=profile), folder)
+        profile_of(Middleware(profile=str(folder / profile) if folder else profile))
     return [(finding.rule, finding.message, finding.help) for finding in caught.value.findings]
 
 
@@ -63,8 +63,7 @@ def test_a_profile_states_its_sources(name):
 
 def test_a_file_changes_what_it_states(tmp_path):
     (tmp_path / "own.yaml").write_text(OWN)
-    described = middleware(profile="own.yaml")
-    own, base = profile_of(described, tmp_path), profile_of(Middleware())
+    own, base = profile_of(middleware(profile=str(tmp_path / "own.yaml"))), profile_of(Middleware())
     assert own.title == "a port that acknowledges quickly"
     assert own.waiting.slots == 3
     assert own.waiting.stored_data_ends_wait

@@ -13,7 +13,7 @@ from amalthea_uros.spec.transports import CanFd, CustomTransport, NetworkSection
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.uros.transports import framing
-from amalthea_uros.uros.transports.can import CanBus, CanFdLine, Identifier, bits, data_bytes, frames, transmission_time
+from amalthea_uros.uros.transports.can import CanBus, CanFdLine, Identifier, bits, data_bytes, frames, max_message_bits
 from amalthea_uros.uros.transports.driven import (
     CustomLine,
     SerialLine,
@@ -243,4 +243,5 @@ def test_the_longest_frame_exists():
 def test_frames_of_a_message(length, count):
     assert frames(length) == count
     # Each of 135 bits at 4 us.
-    assert transmission_time(CanBus(bit_rate=250_000), length) == count * 540 * US
+    bus = CanBus(bit_rate=250_000)
+    assert bus.duration(max_message_bits(bus, length)) == count * 540 * US

@@ -11,14 +11,17 @@ while it spins; strings and sequences of messages are allocated by the applicati
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
+from amalthea_uros.perf.executors import HandleKind
 from amalthea_uros.perf.network import Direction, Recovery
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import MILLISECOND, Time
-from amalthea_uros.uros.application.entities import Entities, entities_of
+from amalthea_uros.uros.application.callbacks import sections_of
+from amalthea_uros.uros.application.created_entities import SESSION, CreatedEntity, created_entities
 from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow
 from amalthea_uros.uros.middleware.profile import CreationFigures, Heartbeat, MemoryUse, Sending
@@ -42,6 +45,18 @@ _ENTITIES = {
     "RMW_UXRCE_MAX_GUARD_CONDITION": 32,
     "RMW_UXRCE_MAX_WAIT_SETS": 28,
 }
+#: The option for the pool of each kind of entity; a publisher and a subscription have a topic each, also for the same name.
+_CREATED = {
+    "RMW_UXRCE_MAX_SESSIONS": SESSION,
+    "RMW_UXRCE_MAX_NODES": "participant",
+    "RMW_UXRCE_MAX_TOPICS": "topic",
+    "RMW_UXRCE_MAX_PUBLISHERS": "publisher",
+    "RMW_UXRCE_MAX_SUBSCRIPTIONS": "subscriber",
+    "RMW_UXRCE_MAX_SERVICES": "replier",
+    "RMW_UXRCE_MAX_CLIENTS": "requester",
+}
+#: Each timer has one (ros2/rcl rcl/src/rcl/timer.c), that of an action server included.
+_WITH_GUARD_CONDITION = (HandleKind.TIMER, HandleKind.GUARD_CONDITION, HandleKind.ACTION_SERVER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,17 +205,12 @@ def _options(application: Application, layout: MessageLayout) -> Iterator[Option
 def _needs(application: Application, layout: MessageLayout) -> dict[str, int]:
     """What the application needs of each option that depends on it."""
     middleware, contents = layout.build.middleware, contents_of(application)
-    entities = entities_of(application, middleware)
-    needed = {
-        "RMW_UXRCE_MAX_SESSIONS": 1 if entities.nodes else 0,
-        "RMW_UXRCE_MAX_NODES": entities.nodes,
-        "RMW_UXRCE_MAX_TOPICS": entities.topics,
-        "RMW_UXRCE_MAX_PUBLISHERS": entities.publishers,
-        "RMW_UXRCE_MAX_SUBSCRIPTIONS": entities.subscriptions,
-        "RMW_UXRCE_MAX_SERVICES": entities.services,
-        "RMW_UXRCE_MAX_CLIENTS": entities.clients,
-        "RMW_UXRCE_MAX_WAIT_SETS": entities.executors,
-        "RMW_UXRCE_MAX_GUARD_CONDITION": entities.guard_conditions,
+    entities = created_entities(application, middleware)
+    kinds = [kind for node in application.nodes for kind, _ in sections_of(node)]
+    counts = Counter(entity.kind for entity in entities)
+    needed = {option: counts[kind] for option, kind in _CREATED.items()} | {
+        "RMW_UXRCE_MAX_WAIT_SETS": len(middleware.stated_executors) if kinds else 0,
+        "RMW_UXRCE_MAX_GUARD_CONDITION": sum(kind in _WITH_GUARD_CONDITION for kind in kinds),
         "RMW_UXRCE_MAX_HISTORY": _waiting_messages(application, entities, middleware),
         "RMW_UXRCE_NODE_NAME_MAX_LENGTH": max((len(node.name) + 1 for node in application.nodes), default=0),
         "RMW_UXRCE_TOPIC_NAME_MAX_LENGTH": max(map(_name_length, _names(application)), default=0),
@@ -220,7 +230,7 @@ def _needs(application: Application, layout: MessageLayout) -> dict[str, int]:
     )
 
 
-def _waiting_messages(application: Application, entities: Entities, middleware: Middleware) -> int:
+def _waiting_messages(application: Application, entities: Sequence[CreatedEntity], middleware: Middleware) -> int:
     """How many received messages can wait at the same time at least: if each is taken before the next one of its entity arrives.
 
     Whether it is depends on response times, so more of them can wait.
@@ -240,7 +250,8 @@ def _waiting_messages(application: Application, entities: Entities, middleware: 
         and not middleware.multithread
         and not (middleware.reliable.waits and any(map(_sends_reliably, application.nodes)))
     )
-    return min(entities.receivers, 1) if takes_each else entities.receivers
+    receivers = sum(entity.asks_for_data for entity in entities)
+    return min(receivers, 1) if takes_each else receivers
 
 
 def _sends_reliably(node: NodeSection) -> bool:

@@ -36,17 +36,10 @@ _HEAP = "not known: entities, fragments, and messages that wait, in any number"
 
 @dataclass(frozen=True, slots=True)
 class ZenohPico(Profile):
-    """zenoh-pico with rmw_zenoh_pico, whose subscribers put messages into queues for an rclc executor."""
+    """zenoh-pico with rmw_zenoh_pico, whose subscribers put messages into queues for an rclc executor.
 
-    @property
-    def slots(self) -> None:
-        """Its queues are lists on the heap, without a limit."""
-        return None
-
-    @property
-    def slot_size(self) -> None:
-        """There are no slots."""
-        return None
+    The queues are lists on the heap, without a limit, and nobody keeps messages until they are acknowledged.
+    """
 
     @property
     def sending(self) -> Sending:
@@ -65,16 +58,6 @@ class ZenohPico(Profile):
         """Messages that keep the connection alive."""
         interval = self._value("Z_TRANSPORT_LEASE") * MILLISECOND // _KEEP_ALIVES
         return Heartbeat(self.size("heartbeat"), interval, is_answered=False)
-
-    @property
-    def recovery(self) -> None:
-        """It leaves that to the transport."""
-        return None
-
-    @property
-    def buffers(self) -> None:
-        """There are none: nobody keeps messages until they are acknowledged."""
-        return None
 
     @property
     def option_table(self) -> Mapping[str, OptionRow]:

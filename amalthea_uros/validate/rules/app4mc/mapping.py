@@ -5,44 +5,33 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from amalthea_uros.metamodel.classes import (
-    ISR,
-    ISRAllocation,
-    PhysicalSectionConstraint,
-    PhysicalSectionMapping,
-    Scheduler,
-    SchedulerAllocation,
-    Section,
-    Task,
-    TaskAllocation,
-    TaskScheduler,
-)
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.validate.context import Context
 from amalthea_uros.validate.rule import model_rule
 from amalthea_uros.validate.scheduling import GROUPING, parent_of, policy, responsibilities
 from amalthea_uros.validate.wording import joined
 
 
-@model_rule("AM-Mapping-Task-Scheduler", Task)
-def _check_task(element: Task, context: Context) -> Iterator[str]:
-    if not context.uses(TaskAllocation, "task")[element]:
+@model_rule("AM-Mapping-Task-Scheduler", am.Task)
+def _check_task(element: am.Task, context: Context) -> Iterator[str]:
+    if not context.uses(am.TaskAllocation, "task")[element]:
         yield f"task {element.name!r} has no task allocation"
 
 
-@model_rule("AM-Mapping-ISR-Scheduler", ISR)
-def _check_isr(element: ISR, context: Context) -> Iterator[str]:
-    if not context.uses(ISRAllocation, "isr")[element]:
+@model_rule("AM-Mapping-ISR-Scheduler", am.ISR)
+def _check_isr(element: am.ISR, context: Context) -> Iterator[str]:
+    if not context.uses(am.ISRAllocation, "isr")[element]:
         yield f"ISR {element.name!r} has no ISR allocation"
 
 
-@model_rule("AM-Mapping-Scheduler-ProcessingUnit", Scheduler)
-def _check_scheduler(element: Scheduler, context: Context) -> Iterator[str]:
-    if policy(element) != GROUPING and not context.uses(SchedulerAllocation, "scheduler")[element]:
+@model_rule("AM-Mapping-Scheduler-ProcessingUnit", am.Scheduler)
+def _check_scheduler(element: am.Scheduler, context: Context) -> Iterator[str]:
+    if policy(element) != GROUPING and not context.uses(am.SchedulerAllocation, "scheduler")[element]:
         yield f"scheduler {element.name!r} has no scheduler allocation"
 
 
-@model_rule("DOC-Task-Affinity-Intersection", TaskAllocation)
-def _check_task_affinity_intersection(element: TaskAllocation, context: Context) -> Iterator[str]:
+@model_rule("DOC-Task-Affinity-Intersection", am.TaskAllocation)
+def _check_task_affinity_intersection(element: am.TaskAllocation, context: Context) -> Iterator[str]:
     task, scheduler = element.task, element.scheduler
     if task is None or scheduler is None or scheduler.unresolved is not None:
         return
@@ -53,24 +42,24 @@ def _check_task_affinity_intersection(element: TaskAllocation, context: Context)
         yield f"task {task.qualified_name!r} cannot run: {scheduler.name!r} is responsible for no processing unit of its affinity"
 
 
-@model_rule("DOC-Task-Single-Scheduler", TaskAllocation)
-def _check_task_single_scheduler(element: TaskAllocation, context: Context) -> Iterator[str]:
+@model_rule("DOC-Task-Single-Scheduler", am.TaskAllocation)
+def _check_task_single_scheduler(element: am.TaskAllocation, context: Context) -> Iterator[str]:
     task = element.task
     schedulers = context.once(_schedulers).get(task, {}) if task is not None else {}
     if task is not None and len(schedulers) > 1:
         yield f"task {task.qualified_name!r} is allocated to {joined(repr(each.qualified_name) for each in schedulers)}"
 
 
-def _schedulers(context: Context) -> dict[Task, dict[TaskScheduler, None]]:
-    found: dict[Task, dict[TaskScheduler, None]] = {}
-    for allocation in context.all(TaskAllocation):
+def _schedulers(context: Context) -> dict[am.Task, dict[am.TaskScheduler, None]]:
+    found: dict[am.Task, dict[am.TaskScheduler, None]] = {}
+    for allocation in context.all(am.TaskAllocation):
         if allocation.task is not None and allocation.scheduler is not None:
             found.setdefault(allocation.task, {})[allocation.scheduler] = None
     return found
 
 
-@model_rule("DOC-Grouping-Parent", TaskScheduler)
-def _check_grouping_parent(element: TaskScheduler, context: Context) -> Iterator[str]:
+@model_rule("DOC-Grouping-Parent", am.TaskScheduler)
+def _check_grouping_parent(element: am.TaskScheduler, context: Context) -> Iterator[str]:
     algorithm, definition = policy(element), element.definition
     needs_parent = algorithm == GROUPING or (definition is not None and definition.requires_parent_scheduler is True)
     if needs_parent and parent_of(element) is None:
@@ -80,17 +69,17 @@ def _check_grouping_parent(element: TaskScheduler, context: Context) -> Iterator
         yield f"{element.name!r} schedules {children} tasks and schedulers, but {algorithm} requires exactly one"
 
 
-def _children(context: Context) -> Counter[Scheduler | None]:
+def _children(context: Context) -> Counter[am.Scheduler | None]:
     tasks = {
-        (allocation.task, allocation.scheduler) for allocation in context.all(TaskAllocation) if allocation.task is not None
+        (allocation.task, allocation.scheduler) for allocation in context.all(am.TaskAllocation) if allocation.task is not None
     }
-    children: Counter[Scheduler | None] = Counter(scheduler for _, scheduler in tasks)
-    children.update(parent_of(scheduler) for scheduler in context.all(TaskScheduler))
+    children: Counter[am.Scheduler | None] = Counter(scheduler for _, scheduler in tasks)
+    children.update(parent_of(scheduler) for scheduler in context.all(am.TaskScheduler))
     return children
 
 
-@model_rule("DOC-PhysicalSection", PhysicalSectionMapping)
-def _check_physicalsection(element: PhysicalSectionMapping, context: Context) -> Iterator[str]:
+@model_rule("DOC-PhysicalSection", am.PhysicalSectionMapping)
+def _check_physicalsection(element: am.PhysicalSectionMapping, context: Context) -> Iterator[str]:
     memory = element.memory
     if memory is None:
         return
@@ -101,9 +90,9 @@ def _check_physicalsection(element: PhysicalSectionMapping, context: Context) ->
                 yield f"section {section.qualified_name!r} is {where}"
 
 
-def _constraints(context: Context) -> dict[Section, list[PhysicalSectionConstraint]]:
-    found: dict[Section, list[PhysicalSectionConstraint]] = {}
-    for constraint in context.all(PhysicalSectionConstraint):
+def _constraints(context: Context) -> dict[am.Section, list[am.PhysicalSectionConstraint]]:
+    found: dict[am.Section, list[am.PhysicalSectionConstraint]] = {}
+    for constraint in context.all(am.PhysicalSectionConstraint):
         if constraint.section is not None and constraint.memories:
             found.setdefault(constraint.section, []).append(constraint)
     return found

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from amalthea_uros._internal.plural import counted
-from amalthea_uros.metamodel.classes import Amalthea
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.defaults import default_value
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.factfile import FeatureKind
@@ -16,8 +16,8 @@ from amalthea_uros.validate.rule import model_rule
 from amalthea_uros.validate.rules.emf.features import per_class, stored_features
 
 
-@model_rule("EMF-DEFAULT", Amalthea, in_canonical_form=True)
-def _check_default(element: Amalthea, context: Context) -> Iterator[str]:
+@model_rule("EMF-DEFAULT", am.Amalthea, in_canonical_form=True)
+def _check_default(element: am.Amalthea, context: Context) -> Iterator[str]:
     document = element.document
     if document is None or document.source is None or document.migrated_from is not None:
         return
@@ -46,8 +46,8 @@ def _omitted(cls: type[Element], version: str) -> tuple[tuple[str, object], ...]
     return tuple((name, value) for name, value in found if value is not None)
 
 
-@model_rule("EMF-ORDER", Amalthea, in_canonical_form=True)
-def _check_order(element: Amalthea, context: Context) -> Iterator[str]:
+@model_rule("EMF-ORDER", am.Amalthea, in_canonical_form=True)
+def _check_order(element: am.Amalthea, context: Context) -> Iterator[str]:
     document = element.document
     if document is None or document.source is None or document.migrated_from is not None:
         return
@@ -79,8 +79,8 @@ def _containments(cls: type[Element], version: str) -> tuple[str, ...]:
     return tuple(name for name, fact in stored_features(cls, version).items() if fact.kind is FeatureKind.CONTAINMENT)
 
 
-@model_rule("EMF-ID", Amalthea, in_canonical_form=True)
-def _check_id(element: Amalthea, context: Context) -> Iterator[str]:
+@model_rule("EMF-ID", am.Amalthea, in_canonical_form=True)
+def _check_id(element: am.Amalthea, context: Context) -> Iterator[str]:
     document = element.document
     if document is None or document.source is None or document.migrated_from is not None:
         return

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import cache
 
 from amalthea_uros.metamodel import classes
-from amalthea_uros.metamodel.classes import Amalthea, CustomProperty
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element, extras_if_any
 from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import containments_of, features_of
@@ -21,16 +21,16 @@ from amalthea_uros.validate.rules.inchron.importer import attributes_at, metamod
 VERSIONS = ("1.2.0", "2.0.0", "2.1.0", "2.2.0", "3.0.0", "3.1.0", "3.2.0", "3.3.0")
 
 
-@model_rule("INC-IO-VERSION", Amalthea, is_about_files=True)
-def _check_version(element: Amalthea, context: Context) -> Iterator[str | Downgraded]:
+@model_rule("INC-IO-VERSION", am.Amalthea, is_about_files=True)
+def _check_version(element: am.Amalthea, context: Context) -> Iterator[str | Downgraded]:
     document = element.document
     if document is not None and document.file_version not in VERSIONS:
         message = f"{spelled(document.file_version)} is not supported by am2inc"
         yield Downgraded(message) if document.migrated_from is None else message
 
 
-@model_rule("INC-IO-SAMEVERSION", Amalthea)
-def _check_same_version(element: Amalthea, context: Context) -> Iterator[str]:
+@model_rule("INC-IO-SAMEVERSION", am.Amalthea)
+def _check_same_version(element: am.Amalthea, context: Context) -> Iterator[str]:
     first, *others = context.model.documents
     document = element.document
     if document in others and metamodel_of(document) != metamodel_of(first):
@@ -38,8 +38,8 @@ def _check_same_version(element: Amalthea, context: Context) -> Iterator[str]:
         yield f"the file uses {spelled(document.file_version)}, but {other} uses {first.file_version}"
 
 
-@model_rule("INC-IO-SUBMODEL-ONCE", Amalthea)
-def _check_sub_models(element: Amalthea, context: Context) -> Iterator[str]:
+@model_rule("INC-IO-SUBMODEL-ONCE", am.Amalthea)
+def _check_sub_models(element: am.Amalthea, context: Context) -> Iterator[str]:
     holders = context.once(_holders)
     for part in element.contents():
         first = holders.get(type(part), element)
@@ -54,7 +54,7 @@ def _holders(context: Context) -> dict[type[Element], Element]:
     found: dict[type[Element], Element] = {}
     for document in context.model.documents:
         for part in document.root.contents():
-            if not isinstance(part, CustomProperty):
+            if not isinstance(part, am.CustomProperty):
                 found.setdefault(type(part), document.root)
     return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from amalthea_uros.metamodel.classes import DataSize, Frequency, INamespaceMember, Time
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import TYPE_MARK, encode, name_of, segments
@@ -29,12 +29,12 @@ def metamodel(element: Element) -> str:
     return _NEWEST if document is None else metamodel_of(document)
 
 
-def has_unit(quantity: Time | Frequency | DataSize) -> bool:
+def has_unit(quantity: am.Time | am.Frequency | am.DataSize) -> bool:
     """Whether a quantity has a unit; am2inc replaces a quantity without one by a default."""
     return quantity.unit not in (None, "_undefined_")
 
 
-def amount(quantity: Time | Frequency | DataSize | None) -> float:
+def amount(quantity: am.Time | am.Frequency | am.DataSize | None) -> float:
     """The value of a quantity in its unit; 0 if it has no unit."""
     return (quantity.value or 0) if quantity is not None and has_unit(quantity) else 0
 
@@ -60,7 +60,7 @@ def has_id(element: Element) -> bool:
 
 def without_namespace(context: Context) -> dict[Element, str]:
     """The members of namespaces that have no `xmi:id`, with the names by which am2inc finds them."""
-    members = (member for member in context.all(INamespaceMember) if member.namespace is not None and not has_id(member))
+    members = (member for member in context.all(am.INamespaceMember) if member.namespace is not None and not has_id(member))
     return {member: f"{encode(name_of(member))}{TYPE_MARK}{type(member).__name__}" for member in members}
 
 

@@ -5,23 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from amalthea_uros.errors import UnknownError
-from amalthea_uros.metamodel.classes import (
-    ISR,
-    ArrivalCurveEntry,
-    ArrivalCurveStimulus,
-    CustomStimulus,
-    EventStimulus,
-    InterProcessStimulus,
-    InterProcessTrigger,
-    PeriodicBurstStimulus,
-    PeriodicStimulus,
-    PeriodicSyntheticStimulus,
-    Process,
-    RelativePeriodicStimulus,
-    Stimulus,
-    Task,
-    VariableRateStimulus,
-)
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.perf.events import EventSet
 from amalthea_uros.timing.activation.releases import response_time_limits
@@ -36,55 +20,55 @@ from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined, listed
 
 
-@model_rule("TIM-PERIOD", Stimulus)
-def _check_period(element: Stimulus, context: Context) -> Iterator[str]:
+@model_rule("TIM-PERIOD", am.Stimulus)
+def _check_period(element: am.Stimulus, context: Context) -> Iterator[str]:
     match element:
-        case PeriodicStimulus() | PeriodicSyntheticStimulus() | PeriodicBurstStimulus():
+        case am.PeriodicStimulus() | am.PeriodicSyntheticStimulus() | am.PeriodicBurstStimulus():
             if not (picoseconds(element.recurrence) or 0) > 0:
                 yield f"stimulus {element.name!r} has no positive recurrence with a unit"
-            if isinstance(element, PeriodicStimulus) and element.jitter is not None and None in bounds(element.jitter):
+            if isinstance(element, am.PeriodicStimulus) and element.jitter is not None and None in bounds(element.jitter):
                 yield f"the jitter of stimulus {element.name!r} has no lower or no upper bound"
-        case RelativePeriodicStimulus():
+        case am.RelativePeriodicStimulus():
             if not (bounds(element.next_occurrence)[0] or 0) > 0:
                 yield f"stimulus {element.name!r} has no positive minimum distance with a unit"
-        case ArrivalCurveStimulus():
+        case am.ArrivalCurveStimulus():
             if not any(_limits(entry) for entry in element.entries):
                 yield f"stimulus {element.name!r} has no positive lower time border with a unit for two or more occurrences"
-        case VariableRateStimulus(scenario=None):
+        case am.VariableRateStimulus(scenario=None):
             if not (picoseconds(element.step) or 0) > 0 or not (bounds(element.occurrences_per_step)[1] or 0) > 0:
                 yield f"the maximum number of occurrences per step of stimulus {element.name!r} is unknown"
-        case CustomStimulus():
+        case am.CustomStimulus():
             why = f": {element.description}" if element.description else ""
             yield f"the activation pattern of custom stimulus {element.name!r} is unknown{why}"
 
 
-def _limits(entry: ArrivalCurveEntry) -> bool:
+def _limits(entry: am.ArrivalCurveEntry) -> bool:
     """Whether an entry defines a minimum time between occurrences."""
     return entry.effective("number_of_occurrences") > 1 and (picoseconds(entry.lower_time_border) or 0) > 0
 
 
-@model_rule("TIM-STIMULUS", Process)
-def _check_stimulus(element: Process, context: Context) -> Iterator[str]:
-    if isinstance(element, Task | ISR) and not any(_occurs(stimulus, context) for stimulus in element.stimuli):
+@model_rule("TIM-STIMULUS", am.Process)
+def _check_stimulus(element: am.Process, context: Context) -> Iterator[str]:
+    if isinstance(element, am.Task | am.ISR) and not any(_occurs(stimulus, context) for stimulus in element.stimuli):
         if element.stimuli:
             yield f"{element.name!r} is never activated: nothing triggers {listed(element.stimuli)}"
         else:
             yield f"{element.name!r} is never activated: it has no stimulus"
 
 
-def _occurs(stimulus: Stimulus, context: Context) -> bool:
+def _occurs(stimulus: am.Stimulus, context: Context) -> bool:
     """Whether a stimulus comes from the environment, or is triggered by the model."""
     match stimulus:
-        case InterProcessStimulus(unresolved=None):
+        case am.InterProcessStimulus(unresolved=None):
             return stimulus in context.once(_triggered)
-        case EventStimulus(unresolved=None):
+        case am.EventStimulus(unresolved=None):
             return bool(stimulus.triggering_events)
     return True
 
 
-def _triggered(context: Context) -> set[Stimulus]:
+def _triggered(context: Context) -> set[am.Stimulus]:
     """The stimuli that a process triggers."""
-    triggers = (trigger for trigger in context.all(InterProcessTrigger) if executing(trigger, context))
+    triggers = (trigger for trigger in context.all(am.InterProcessTrigger) if executing(trigger, context))
     return {trigger.stimulus for trigger in triggers if trigger.stimulus is not None}
 
 

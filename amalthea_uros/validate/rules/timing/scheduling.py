@@ -7,22 +7,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from math import ceil
 
-from amalthea_uros.metamodel.classes import (
-    ISR,
-    AbstractMemoryElement,
-    ISRAllocation,
-    Label,
-    Memory,
-    MemoryMapping,
-    PhysicalSectionMapping,
-    Process,
-    ProcessingUnit,
-    Runnable,
-    Section,
-    Task,
-    TaskAllocation,
-    TaskScheduler,
-)
+from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.magnitudes import bits
 from amalthea_uros.timing.activation.load import unit_hint
 from amalthea_uros.timing.scheduling.allocation import is_by_priority, sharing_a_priority
@@ -35,9 +20,9 @@ from amalthea_uros.validate.system_context import SystemContext
 from amalthea_uros.validate.wording import joined
 
 
-@model_rule("TIM-ALLOCATION", Process)
-def _check_allocation(element: Process, context: Context) -> Iterator[str]:
-    if not isinstance(element, Task | ISR):
+@model_rule("TIM-ALLOCATION", am.Process)
+def _check_allocation(element: am.Process, context: Context) -> Iterator[str]:
+    if not isinstance(element, am.Task | am.ISR):
         return
     times = context.once(_allocations)[element]
     if times == 0:
@@ -46,27 +31,27 @@ def _check_allocation(element: Process, context: Context) -> Iterator[str]:
         yield f"{element.name!r} is allocated {times} times"
 
 
-def _allocations(context: Context) -> Counter[Process]:
+def _allocations(context: Context) -> Counter[am.Process]:
     """How often each process is allocated to a scheduler or an interrupt controller."""
-    tasks = (allocation.task for allocation in context.all(TaskAllocation) if allocation.scheduler is not None)
-    isrs = (allocation.isr for allocation in context.all(ISRAllocation) if allocation.controller is not None)
+    tasks = (allocation.task for allocation in context.all(am.TaskAllocation) if allocation.scheduler is not None)
+    isrs = (allocation.isr for allocation in context.all(am.ISRAllocation) if allocation.controller is not None)
     return Counter(process for process in (*tasks, *isrs) if process is not None)
 
 
-@model_rule("TIM-CLOCK", ProcessingUnit)
-def _check_clock(element: ProcessingUnit, context: Context) -> Iterator[str]:
+@model_rule("TIM-CLOCK", am.ProcessingUnit)
+def _check_clock(element: am.ProcessingUnit, context: Context) -> Iterator[str]:
     if clock(element) is None:
         yield f"the clock frequency of {element.name!r} is unknown"
 
 
-@model_rule("TIM-POLICY", TaskScheduler)
-def _check_policy(element: TaskScheduler, context: Context) -> Iterator[str]:
-    if policy(element) is None and context.uses(TaskAllocation, "scheduler")[element]:
+@model_rule("TIM-POLICY", am.TaskScheduler)
+def _check_policy(element: am.TaskScheduler, context: Context) -> Iterator[str]:
+    if policy(element) is None and context.uses(am.TaskAllocation, "scheduler")[element]:
         yield f"scheduler {element.name!r} has tasks, but no policy"
 
 
-@model_rule("TIM-PRIORITY", TaskAllocation)
-def _check_priority(element: TaskAllocation, context: Context) -> Iterator[str]:
+@model_rule("TIM-PRIORITY", am.TaskAllocation)
+def _check_priority(element: am.TaskAllocation, context: Context) -> Iterator[str]:
     if element.task is not None and is_by_priority(policy(deciding(element.scheduler))) and priority(element) is None:
         yield f"task {element.task.name!r} has no priority"
 
@@ -96,8 +81,8 @@ def _percent(share: Fraction | int) -> str:
     return f"{number_text(Fraction(ceil(share * 100_000), 1000))} %"
 
 
-@model_rule("TIM-MEMORY", Memory)
-def _check_memory(element: Memory, context: Context) -> Iterator[str]:
+@model_rule("TIM-MEMORY", am.Memory)
+def _check_memory(element: am.Memory, context: Context) -> Iterator[str]:
     size = bits(element.definition.size) if element.definition is not None else None
     mapped = context.once(_mapped).get(element, {})
     needed = sum(bits(part.size) or 0 for part in mapped)
@@ -105,18 +90,18 @@ def _check_memory(element: Memory, context: Context) -> Iterator[str]:
         yield f"{element.name!r} has a size of {data_size_text(size)}, but the objects mapped to it need {data_size_text(needed)}"
 
 
-def _mapped(context: Context) -> dict[Memory, dict[AbstractMemoryElement, None]]:
+def _mapped(context: Context) -> dict[am.Memory, dict[am.AbstractMemoryElement, None]]:
     """The objects mapped to each memory, each of them once, even if it is mapped in several ways."""
-    sections: dict[Section, list[AbstractMemoryElement]] = {}
-    candidates: tuple[Label | Runnable, ...] = (*context.all(Label), *context.all(Runnable))
+    sections: dict[am.Section, list[am.AbstractMemoryElement]] = {}
+    candidates: tuple[am.Label | am.Runnable, ...] = (*context.all(am.Label), *context.all(am.Runnable))
     for part in candidates:
         if part.section is not None:
             sections.setdefault(part.section, []).append(part)
-    found: dict[Memory, dict[AbstractMemoryElement, None]] = {}
-    for mapping in context.all(MemoryMapping):
+    found: dict[am.Memory, dict[am.AbstractMemoryElement, None]] = {}
+    for mapping in context.all(am.MemoryMapping):
         if mapping.memory is not None and mapping.abstract_element is not None:
             found.setdefault(mapping.memory, {})[mapping.abstract_element] = None
-    for placed in context.all(PhysicalSectionMapping):
+    for placed in context.all(am.PhysicalSectionMapping):
         if placed.memory is not None:
             parts = [part for section in placed.origin for part in sections.get(section, ())]
             found.setdefault(placed.memory, {}).update(dict.fromkeys((*parts, *placed.labels, *placed.run_entities)))

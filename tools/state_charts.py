@@ -10,23 +10,57 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from amalthea_uros._internal.arrays import Numbers
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Severity
-from amalthea_uros.trace.files import TracePlace, TraceProblems
+from amalthea_uros.trace.files import TraceProblems
 from amalthea_uros.trace.readers import open_trace
 from amalthea_uros.trace.table import Entity, EntityKind, EventKind, EventTable
 from amalthea_uros.trace.vocabulary import (
-    ACCESS,
     ENTERING,
     LEAVING,
     ON_CORE,
     PROCESS,
     PROCESSES,
-    RUNNABLE,
-    SEMAPHORE,
     SOURCES,
     WORDS,
+    chart,
+)
+
+#: Executions of runnables (section 2.3.3).
+RUNNABLE = chart(
+    {
+        EventKind.RUNNABLE_START: ("terminated", "running"),
+        EventKind.RUNNABLE_SUSPEND: ("running", "suspended"),
+        EventKind.RUNNABLE_RESUME: ("suspended", "running"),
+        EventKind.RUNNABLE_TERMINATE: ("running", "terminated"),
+    }
+)
+
+#: Semaphores (section 2.3.7); those of spinlocks are a part of it (section 2.3.8).
+SEMAPHORE = chart(
+    {
+        EventKind.USED: ("free used", "used"),
+        EventKind.LOCK: ("free", "full"),
+        EventKind.LOCK_USED: ("used", "full"),
+        EventKind.OVERFULL: ("full overfull", "overfull"),
+        EventKind.FULL: ("overfull", "full"),
+        EventKind.UNLOCK_FULL: ("full", "used"),
+        EventKind.FREE: ("used", "free"),
+        EventKind.UNLOCK: ("full", "free"),
+    }
+)
+
+#: What a job does with a semaphore: the order of the events that processes cause (section 2.3.7).
+ACCESS = chart(
+    {
+        EventKind.REQUEST_SEMAPHORE: ("idle", "requested"),
+        EventKind.INCREMENT: ("requested", "requested"),
+        EventKind.QUEUED: ("requested", "queued"),
+        EventKind.WAITING: ("requested queued", "waiting"),
+        EventKind.ASSIGNED: ("requested queued waiting", "assigned"),
+        EventKind.RELEASED: ("assigned", "idle"),
+        EventKind.DECREMENT: ("idle", "idle"),
+    }
 )
 
 #: What creates an instance, of which the numbers have no gaps.
@@ -54,8 +88,8 @@ def check_trace(path: Path) -> tuple[Finding, ...]:
     ReadError : the file cannot be read.
     """
     reader, charts = open_trace(path), StateCharts(path)
-    for table, lines in reader.numbered():
-        charts.check(table, lines)
+    for table in reader:
+        charts.check(table)
     return reader.findings + charts.findings
 
 
@@ -83,7 +117,6 @@ class _Event(NamedTuple):
     source_instance: int
     target: int
     target_instance: int
-    place: TracePlace
 
 
 class StateCharts:
@@ -113,17 +146,16 @@ class StateCharts:
         """The problems so far."""
         return self._problems.findings
 
-    def check(self, table: EventTable, lines: Numbers | None = None) -> None:
-        """Check some events, of which the lines in the file may be known."""
+    def check(self, table: EventTable) -> None:
+        """Check some events."""
         self._entities = table.entities
-        places = [TracePlace()] * len(table) if lines is None else list(map(TracePlace, lines.tolist()))
         columns = [column.tolist() for name, column in table.to_dict().items() if name != "note"]
-        for time, kind, source, source_instance, target, target_instance, place in zip(*columns, places, strict=True):
-            self._check(_Event(time, EventKind(kind), source, source_instance, target, target_instance, place))
+        for time, kind, *ends in zip(*columns, strict=True):
+            self._check(_Event(time, EventKind(kind), *ends))
 
     def _check(self, event: _Event) -> None:
         if event.time < self._last_time:
-            self._problems.add("TRC004", Severity.ERROR, "the time is less than that of an event before", event.place)
+            self._problems.add("time", Severity.ERROR, "the time is less than that of an event before")
         self._last_time = event.time
         if event.kind is EventKind.GAP:
             self._forget()
@@ -158,7 +190,7 @@ class StateCharts:
             last = self._last_instances.get(event.target)
             if last is not None and event.target_instance != last + 1:
                 message = f"the instance numbers of {self._name(event.target)} are not consecutive at {WORDS[event.kind]}"
-                self._problems.add("TRC013", Severity.ERROR, message, event.place)
+                self._problems.add("instance number", Severity.ERROR, message)
             self._last_instances[event.target] = event.target_instance
 
     def _check_source(self, event: _Event) -> None:
@@ -170,12 +202,12 @@ class StateCharts:
         kind = self._entities[event.source].kind
         if kind is EntityKind.STIMULUS and self._triggers.get(event.source) != event.source_instance:
             message = f"{WORDS[event.kind]} by {self._name(event.source)} without a trigger of this instance before it"
-            self._problems.add("TRC014", Severity.ERROR, message, event.place)
+            self._problems.add("trigger", Severity.ERROR, message)
         elif kind in PROCESSES and event.kind in _BY_EXECUTION:
             state = self._job(event.source, event.source_instance).state
             if state is not None and state not in (ON_CORE if event.kind in _WHILE_POLLING else ("running",)):
                 message = f"{WORDS[event.kind]} by {self._name(event.source)} in state {state}, but only a running process acts"
-                self._problems.add("TRC015", Severity.ERROR, message, event.place)
+                self._problems.add("action", Severity.ERROR, message)
 
     def _job(self, process: int, instance: int) -> _ChartedJob:
         """The record of a job; one of which nothing has been seen yet may be older than the trace."""
@@ -192,7 +224,7 @@ class StateCharts:
         job = self._job(event.target, event.target_instance)
         before, after = PROCESS[event.kind]
         if job.state is not None and job.state not in before:
-            self._report("TRC010", event, event.target, job.state)
+            self._report("process state", event, event.target, job.state)
         if event.kind in LEAVING:
             self._check_left(event, job)
         if event.kind in ENTERING:
@@ -211,10 +243,10 @@ class StateCharts:
         ]
         for runnable, _ in executing:
             message = f"{WORDS[event.kind]} of {self._name(event.target)} while it executes the runnable {self._name(runnable)}"
-            self._problems.add("TRC011", Severity.ERROR, message, event.place)
+            self._problems.add("runnable state", Severity.ERROR, message)
         if job.core not in (None, event.source):
             message = f"{WORDS[event.kind]} of {self._name(event.target)} on another core than that on which it executes"
-            self._problems.add("TRC016", Severity.ERROR, message, event.place)
+            self._problems.add("core", Severity.ERROR, message)
         self._cores.pop(event.source, None)
         job.core = None
 
@@ -222,7 +254,7 @@ class StateCharts:
         other = self._cores.get(event.source)
         if other is not None:
             message = f"{self._name(event.source)} executes {self._name(event.target)} and {self._name(other)} at the same time"
-            self._problems.add("TRC016", Severity.ERROR, message, event.place)
+            self._problems.add("core", Severity.ERROR, message)
         job.core = event.source
         self._cores[event.source] = event.target
 
@@ -232,10 +264,10 @@ class StateCharts:
         before, after = RUNNABLE[event.kind]
         state = job.runnables.get(runnable, "terminated" if job.is_complete or event.kind is EventKind.RUNNABLE_START else None)
         if state is not None and state not in before:
-            self._report("TRC011", event, event.target, state)
+            self._report("runnable state", event, event.target, state)
         elif runnable in job.runnables and runnable != _next(job.runnables, event.kind):
             message = f"{WORDS[event.kind]} of {self._name(event.target)} out of order: runnables are nested"
-            self._problems.add("TRC011", Severity.ERROR, message, event.place)
+            self._problems.add("runnable state", Severity.ERROR, message)
         if after == "terminated":
             job.runnables.pop(runnable, None)
         elif runnable in job.runnables or event.kind is EventKind.RUNNABLE_START:
@@ -245,7 +277,7 @@ class StateCharts:
         before, after = SEMAPHORE[event.kind]
         state = self._semaphores.get(event.target)
         if state is not None and state not in before:
-            self._report("TRC012", event, event.target, state)
+            self._report("semaphore state", event, event.target, state)
         self._semaphores[event.target] = after
 
     def _check_access(self, event: _Event) -> None:
@@ -254,15 +286,15 @@ class StateCharts:
         unknown = "idle" if self._job(event.source, event.source_instance).is_complete else None
         state = self._accesses.pop(key, unknown)
         if state is not None and state not in before:
-            self._report("TRC012", event, event.target, state)
+            self._report("semaphore state", event, event.target, state)
         elif event.kind is EventKind.ASSIGNED and self._semaphores.get(event.target) == "free":
-            self._report("TRC012", event, event.target, "free")
+            self._report("semaphore state", event, event.target, "free")
         if after != "idle":
             self._accesses[key] = after
 
     def _report(self, rule: str, event: _Event, entity: int, state: str) -> None:
         message = f"illegal transition of {self._name(entity)}: {WORDS[event.kind]} in state {state}"
-        self._problems.add(rule, Severity.ERROR, message, event.place)
+        self._problems.add(rule, Severity.ERROR, message)
 
     def _name(self, entity: int) -> str:
         return repr(self._entities[entity].name)
