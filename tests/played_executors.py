@@ -177,7 +177,8 @@ class Played:
                 invoked += loop.period
             if kernel.now == begin:
                 yield Until(self._next())
-                self.ended = None
+                for one in members:
+                    one.ended = None
 
     def _next(self):
         """When anything changes next, for a loop that takes no time."""
@@ -248,23 +249,26 @@ class Played:
         if self.is_shared:
             yield Lock(session.mutex)
         # What was stored while others had the session ends the wait, too.
-        if waiting.stored_data_ends_wait and any(each.stored for each in self.entities):
-            timeout = 0
-        if waiting.guard_conditions_end_wait and any(each.flag is not None for each in self.entities):
-            timeout = 0
-        end = kernel.now + timeout
+        end = kernel.now + (0 if self._is_woken() else timeout)
         while not (session.unread and listens) and kernel.now < end:
             yield Listen(session.signal, end)
             while session.unread and not listens:
                 # For others; data does not end a wait for none (micro-ROS/rmw_microxrcedds#305).
                 session.store()
-            if waiting.guard_conditions_end_wait and any(each.flag is not None for each in self.entities):
+            if self._is_woken():
                 break
         most = waiting.messages_per_wait
         for _ in range(len(session.unread) if most is None or not listens else min(most, len(session.unread))):
             session.store()
         if self.is_shared:
             yield from self._unlock()
+
+    def _is_woken(self):
+        """Whether something that is there already ends the wait; without a session, others can store it at any time."""
+        waiting, entities = self.model.waiting, self.entities
+        return (waiting.stored_data_ends_wait and any(each.stored for each in entities)) or (
+            waiting.guard_conditions_end_wait and any(each.flag is not None for each in entities)
+        )
 
     def _unlock(self):
         """Release the session; a thread that has waited for it and has a higher priority goes first, whatever else takes no time."""

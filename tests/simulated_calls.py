@@ -103,8 +103,7 @@ def _fixed(executor, apart, chance):
     if place is not None:
         sleep = apart(place.sleep)
         place = replace(place, sleep=sleep, sleep_early=min(place.sleep_early, sleep // 2))
-    # Threads that use the same buffers without excluding each other are not defined.
-    return replace(executor, handles=tuple(handles), loop=loop, place=place, session=executor.session or "s")
+    return replace(executor, handles=tuple(handles), loop=loop, place=place)
 
 
 def on_wires(seed):
