@@ -72,8 +72,7 @@ class ExecutorRecords:
         )
         of_thread = thread_of(executor, resources.context.system.executors)
         following = of_thread[(of_thread.index(executor) + 1) % len(of_thread)]
-        # The iteration of the last one is followed by that of the first.
-        begin = self._begin(executor) if executor is of_thread[-1] else layout.NEVER
+        begin = self._begin(executor) if executor is self._first_to_end(of_thread) else layout.NEVER
         fields = {
             layout.READER_PROCESS: resources.processes[executor.task],
             layout.INBOX: self.messages.inboxes[executor.name],
@@ -100,13 +99,17 @@ class ExecutorRecords:
         }
         image.put(record, fields)
 
+    def _first_to_end(self, of_thread: Sequence[Executor]) -> Executor:
+        """The executor of a thread whose pause is the first one: the last executor, or that with the longest pause if phases are random."""
+        is_random = self.resources.options.mode is SimulationMode.SAMPLED
+        return max(reversed(of_thread), key=_pause) if is_random else of_thread[-1]
+
     def _begin(self, executor: Executor) -> int:
-        """When the first iteration begins: at random, as its phase against everything else is not known."""
+        """When the first pause ends: at random, as its phase against everything else is not known."""
         if self.resources.options.mode is not SimulationMode.SAMPLED:
             return 0
         self.resources.assume_phase()
-        longest = max(executor.loop.sleep, executor.loop.period or 0)
-        return self.resources.time(self.resources.random_phase(f"executor {executor.name}") * longest >> 64)
+        return self.resources.time(self.resources.random_phase(f"executor {executor.name}") * _pause(executor) >> 64)
 
     def _sleeps(self, executor: Executor) -> int:
         """The stream of sleeps; 0 if it does not sleep."""
@@ -144,6 +147,11 @@ class ExecutorRecords:
         asked_at = self.messages.handles[executor, handle.name] + layout.RELEASED
         fields = {layout.EXECUTION_NUMBER: number, layout.ASKED_AT: asked_at}
         return self.resources.image.record(layout.EXECUTION_SIZE, fields)
+
+
+def _pause(executor: Executor) -> Time:
+    """The longest time between an iteration of an executor and the next one of its thread."""
+    return executor.place.sleep if executor.place is not None else max(executor.loop.sleep, executor.loop.period or 0)
 
 
 def _sleep_at(place: ThreadPlace) -> Interval[Time]:
