@@ -9,6 +9,7 @@ from random_executors import application
 
 from amalthea_uros.executors.semantics.steps import with_steps
 from amalthea_uros.perf.stimuli import Periodic
+from amalthea_uros.simulate.kernel.layout import JOB_SIZE
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.program.build import build_program
 from amalthea_uros.simulate.runs.execution import SimulationRun
@@ -46,7 +47,7 @@ def calls(system, until):
     run = SimulationRun(context, options, program)
     run.driver.jobs = lambda chunk: rows.append(chunk.copy())
     run.execute([])
-    jobs = np.concatenate(rows)
+    jobs = np.concatenate([np.empty((0, JOB_SIZE), np.int64), *rows])
     first = len(program.processes) + len(program.runnables)
     return {
         key: [(int(row[4]) - int(row[2])) // program.units for row in jobs[jobs[:, 0] == first + number]]
@@ -65,7 +66,7 @@ def first_difference(simulated, played):
 def fixed(seed):
     """A random application without publications, in which all phases are known and no two things occur at the same instant.
 
-    No loop goes round without time. Execution times are whole microseconds. Whatever else has a period, a phase or a sleep gets a
+    No loop goes round without time. Execution times are whole microseconds. Whatever has a period, a phase, a timeout or a sleep gets a
     random part of a microsecond, so that two things that do not cause each other do not occur at the same picosecond: who is first
     then is not defined.
     """
@@ -99,11 +100,14 @@ def _fixed(executor, apart, chance):
         sleep = apart(loop.sleep)
         early = min(loop.sleep_early, sleep // 2)
         loop = replace(loop, sleep=sleep, sleep_early=early, pace=loop.pace and loop.pace + sleep - loop.sleep)
-    loop = replace(loop, period=apart(loop.period))
+    loop = replace(loop, period=apart(loop.period), timeout=apart(loop.timeout))
+    # A little less than timeouts, so that they are not cut to nothing.
+    resolution = executor.waiting.resolution and executor.waiting.resolution - chance.randrange(1, US)
+    waiting = replace(executor.waiting, resolution=resolution)
     if place is not None:
         sleep = apart(place.sleep)
         place = replace(place, sleep=sleep, sleep_early=min(place.sleep_early, sleep // 2))
-    return replace(executor, handles=tuple(handles), loop=loop, place=place)
+    return replace(executor, handles=tuple(handles), loop=loop, place=place, waiting=waiting)
 
 
 def on_wires(seed):

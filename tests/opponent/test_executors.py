@@ -58,8 +58,15 @@ def test_every_call_is_that_of_a_player():
 
 @pytest.mark.parametrize(
     "seed",
-    [128, 257, 561, 1586],
-    ids=["turn-of-a-thread", "session-that-is-free", "queue-of-equals", "messages-for-others"],
+    [128, 257, 561, 606, 1586, 3956],
+    ids=[
+        "turn-of-a-thread",
+        "session-that-is-free",
+        "queue-of-equals",
+        "stored-by-others",
+        "messages-for-others",
+        "read-and-not-called",
+    ],
 )
 def test_calls_that_once_differed(seed):
     assert different_calls(seed, Tally()) == []

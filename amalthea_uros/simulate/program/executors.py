@@ -100,7 +100,7 @@ class ExecutorRecords:
         image.put(record, fields)
 
     def _first_to_end(self, of_thread: Sequence[Executor]) -> Executor:
-        """The executor of a thread whose pause is the first one: the last executor, or that with the longest pause if phases are random."""
+        """The executor of a thread whose pause is the first one: the last one, or if phases are random that with the longest pause."""
         is_random = self.resources.options.mode is SimulationMode.SAMPLED
         return max(reversed(of_thread), key=_pause) if is_random else of_thread[-1]
 
