@@ -252,10 +252,10 @@ class Played:
         # What was stored while others had the session ends the wait, too.
         end = kernel.now + (0 if self._is_woken() else timeout)
         while not (session.unread and listens) and kernel.now < end:
-            yield Listen(session.signal, end)
-            while session.unread and not listens:
+            while session.unread:
                 # For others; data does not end a wait for none (micro-ROS/rmw_microxrcedds#305).
                 session.store()
+            yield Listen(session.signal, end)
             if self._is_woken():
                 break
         most = waiting.messages_per_wait
