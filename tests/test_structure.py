@@ -42,7 +42,7 @@ LINES = {
     "platforms": 0,
     "report": 8586,
     "services": 2657,
-    "simulate": 8612,
+    "simulate": 8616,
     "source": 3550,
     "spec": 3019,
     "timing": 5708,
