@@ -149,7 +149,6 @@ class Played:
         self.seen, self.start = SeenLoop(), start
         self.prepares, self.looks = random.choice((0, 0, 2, 4)), random.choice((0, 0, 2, 4))
         self.is_shared = False
-        self.guards = Signal()
         self.members = [self]
 
     def steps(self, members):
@@ -178,7 +177,8 @@ class Played:
                 invoked += loop.period
             if kernel.now == begin:
                 yield Until(self._next())
-                self.ended = None
+                for one in members:
+                    one.ended = None
 
     def _next(self):
         """When anything changes next, for a loop that takes no time."""
@@ -193,7 +193,7 @@ class Played:
         before = total * self.prepares // 4
         if before:
             yield Run(before)
-        begin = self.kernel.now
+        begin, is_unread = self.kernel.now, bool(self.session.unread)
         yield from self._wait(timeout)
         end = self.kernel.now
         if self.ended is not None:
@@ -211,7 +211,8 @@ class Played:
         if self._is_triggered():
             called = yield from self._serve()
         self.seen.rounds.append(self.kernel.now - end)
-        if not called and begin == end:
+        # After what was read, the next wait can take time.
+        if not called and begin == end and not is_unread:
             yield from self._skip(total)
 
     ended = None
@@ -249,21 +250,31 @@ class Played:
         if self.is_shared:
             yield Lock(session.mutex)
         # What was stored while others had the session ends the wait, too.
-        if waiting.stored_data_ends_wait and any(each.stored for each in self.entities):
-            timeout = 0
-        if waiting.guard_conditions_end_wait and any(each.flag is not None for each in self.entities):
-            timeout = 0
-        end = kernel.now + timeout
+        end = kernel.now + (0 if self._is_woken() else timeout)
         while not (session.unread and listens) and kernel.now < end:
-            yield Listen(session.signal if listens else self.guards, end)
-            if waiting.guard_conditions_end_wait and any(each.flag is not None for each in self.entities):
+            while session.unread:
+                # For others; data does not end a wait for none (micro-ROS/rmw_microxrcedds#305).
+                session.store()
+            yield Listen(session.signal, end)
+            if self._is_woken():
                 break
         most = waiting.messages_per_wait
-        for _ in range(len(session.unread) if most is None else min(most, len(session.unread))):
-            if listens:
-                session.store()
+        for _ in range(len(session.unread) if most is None or not listens else min(most, len(session.unread))):
+            session.store()
         if self.is_shared:
-            kernel.unlock(session.mutex)
+            yield from self._unlock()
+
+    def _is_woken(self):
+        """Whether something that is there already ends the wait; without a session, others can store it at any time."""
+        waiting, entities = self.model.waiting, self.entities
+        return (waiting.stored_data_ends_wait and any(each.stored for each in entities)) or (
+            waiting.guard_conditions_end_wait and any(each.flag is not None for each in entities)
+        )
+
+    def _unlock(self):
+        """Release the session; a thread that has waited for it and has a higher priority goes first, whatever else takes no time."""
+        self.kernel.unlock(self.session.mutex)
+        yield Run(0)
 
     def _is_triggered(self):
         ready = {each.handle.name for each in self.entities if each.ready}
@@ -332,7 +343,7 @@ class Played:
         else:
             yield Until(end)
         if self.is_shared:
-            self.kernel.unlock(self.session.mutex)
+            yield from self._unlock()
 
 
 def play(executors, spans, horizon, *, random=None, preempting=(), priorities=None, delays=None, start=None):
@@ -361,8 +372,10 @@ def play(executors, spans, horizon, *, random=None, preempting=(), priorities=No
             kernel.start(one.steps(members), (priorities or {}).get(executor.name, 5 - number))
         for entity in one.entities:
             _release(entity, one, session, kernel, horizon, random, (delays or {}).get(entity.handle.name, 0))
-    for priority, period, offset, least, most in preempting:
-        kernel.start(_preempting(kernel, period, offset, least, most, spans.draw), priority)
+    for priority, period, offset, *cost in preempting:
+        for release in range(offset, horizon, period):
+            # Jobs are in the order of their activations, also among those of other tasks.
+            kernel.at(release, lambda priority=priority, cost=cost: kernel.start(iter((Run(spans.draw(*cost)),)), priority))
     kernel.play(horizon)
     for one in played:
         for entity in one.entities:
@@ -424,15 +437,6 @@ def _arrive(entity, played, session, kernel, time):
         entity.trigger(time)
         if played.model.waiting.guard_conditions_end_wait:
             kernel.wake(session.signal)
-            kernel.wake(played.guards)
     else:
         session.unread.append((entity, time))
         kernel.wake(session.signal)
-
-
-def _preempting(kernel, period, offset, least, most, draw):
-    release = offset
-    while True:
-        yield Until(release)
-        yield Run(draw(least, most))
-        release += period

@@ -42,7 +42,7 @@ LINES = {
     "platforms": 0,
     "report": 8615,
     "services": 2680,
-    "simulate": 8607,
+    "simulate": 8616,
     "source": 3561,
     "spec": 3023,
     "timing": 5708,

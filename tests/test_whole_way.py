@@ -11,10 +11,11 @@ from amalthea_uros.spec.transports import CanFd
 from amalthea_uros.uros.described import describe_content
 from amalthea_uros.uros.transports.can import CanFdLine
 
-NS = 1000
 SEEDS = range(5000 if IS_THOROUGH else 12)
 BLOCK = 12
 ACKNOWLEDGEMENT = 13
+#: The player counts in whole picoseconds, which a message need not take.
+ROUNDING = 10_000
 
 
 def between(chance, low, high):
@@ -23,7 +24,7 @@ def between(chance, low, high):
 
 
 def span(times):
-    return {"min": f"{times[0]} ns", "max": f"{times[1]} ns"}
+    return {"min": f"{times[0]} ps", "max": f"{times[1]} ps"}
 
 
 def drawn(chance):
@@ -56,16 +57,16 @@ def drawn(chance):
     executor = {
         "name": "Executor",
         "priority": 50,
-        "execution_time": {"base": f"{plan['overhead']} ns", "per_message": f"{plan['take']} ns"},
+        "execution_time": {"base": f"{plan['overhead']} ps", "per_message": f"{plan['take']} ps"},
         "semantics": plan["semantics"],
     }
     if loop == "spin_some":
-        executor["loop"] = {"spin_some": f"{plan['timeout']} ns", "sleep": f"{plan['sleep']} ns"}
+        executor["loop"] = {"spin_some": f"{plan['timeout']} ps", "sleep": f"{plan['sleep']} ps"}
     elif loop == "spin":
-        executor["loop"] = {"spin": f"{plan['timeout']} ns"}
+        executor["loop"] = {"spin": f"{plan['timeout']} ps"}
     else:
         plan["period"], plan["timeout"] = chance.choice((5, 10, 20)) * MS, max(plan["timeout"], MS)
-        executor["loop"] = {"spin_period": f"{plan['period']} ns", "timeout": f"{plan['timeout']} ns"}
+        executor["loop"] = {"spin_period": f"{plan['period']} ps", "timeout": f"{plan['timeout']} ps"}
     section = transport(chance, plan)
     subscriptions, timers, publishers = callbacks(chance, plan)
     tasks = plan["tasks"] = []
@@ -91,7 +92,7 @@ def drawn(chance):
     content = {
         "amuros": 1,
         "name": "drawn",
-        "hardware": {"platform": "single-core", "frequency": "1 GHz"},
+        "hardware": {"platform": "single-core", "frequency": "1000 GHz"},
         "os": {"tick": "1 ms"},
         "middleware": {
             "executor": executor,
@@ -105,7 +106,7 @@ def drawn(chance):
         "tasks": [
             {
                 "name": task["name"],
-                "period": f"{task['period']} ns",
+                "period": f"{task['period']} ps",
                 "priority": task["priority"],
                 "execution_time": span(task["cost"]),
                 **({"reads": [task["reads"]]} if task["reads"] else {}),
@@ -124,7 +125,7 @@ def transport(chance, plan):
     if chance.random() < 0.5:
         cost = chance.choice((2, 20)) * US
         plan["stages"].append(((cost, cost), 200))
-        section["interrupt"] = {"name": "Receive", "execution_time": f"{cost} ns", "priority": 5}
+        section["interrupt"] = {"name": "Receive", "execution_time": f"{cost} ps", "priority": 5}
     if wire == "serial":
         plan["rate"] = chance.choice((115200, 921600))
         section["baud_rate"] = plan["rate"]
@@ -135,7 +136,8 @@ def transport(chance, plan):
         plan["rate"], plan["link"] = 12_000_000, between(chance, 0, 2 * MS)
         section["latency"] = span(plan["link"])
     elif wire == "custom":
-        plan["transfer"] = between(chance, 1 * US, 3 * MS)
+        # Wires are counted in whole nanoseconds.
+        plan["transfer"] = tuple(time // 1000 * 1000 for time in between(chance, 1 * US, 3 * MS))
         section["table"] = [{"size": "512 B", "time": span(plan["transfer"])}]
     else:
         section |= {"bitrate": "500 kbit/s", "data_bitrate": "2 Mbit/s"}
@@ -171,7 +173,7 @@ def callbacks(chance, plan):
             {
                 **_callback(handle),
                 "topic": handle["topic"],
-                "interval": f"{handle['period']} ns",
+                "interval": f"{handle['period']} ps",
                 "message_size": f"{handle['size']} B",
                 "reliability": "reliable" if handle["reliable"] else "best-effort",
                 "depth": handle["depth"],
@@ -187,7 +189,7 @@ def callbacks(chance, plan):
             "writes": "motor" if number == 0 else None,
         }
         found.append(handle)
-        timers.append({**_callback(handle), "period": f"{handle['period']} ns"})
+        timers.append({**_callback(handle), "period": f"{handle['period']} ps"})
         if number == 0:
             timers[-1]["reads"] = ["command"]
     sections = {section["name"]: section for section in (*subscriptions, *timers)}
@@ -243,13 +245,13 @@ def contradictions(seed, until=S):
         if bound is None:
             return
         compared[0] += 1
-        if observed and max(observed) * NS > bound + NS * len(plan["handles"]) * 10:
-            found.append(f"{what}: {max(observed) / MS:.4f} ms observed, at most {bound / NS / MS:.4f} ms")
+        if observed and max(observed) > bound + ROUNDING:
+            found.append(f"{what}: {max(observed) / MS:.4f} ms observed, at most {bound / MS:.4f} ms")
 
     (executor,) = analysis.executors
     for handle in executor.handles:
         at_most(f"response of {handle.name}", seen.responses[handle.name], handle.response.worst)
-        if seen.responses[handle.name] and min(seen.responses[handle.name]) * NS + 100 * NS < handle.response.best:
+        if seen.responses[handle.name] and min(seen.responses[handle.name]) + ROUNDING < handle.response.best:
             found.append(f"{handle.name} is faster than {handle.response.best}")
         if handle.lateness is not None:
             at_most(f"lateness of {handle.name}", seen.lateness[handle.name], handle.lateness.most)
@@ -270,8 +272,8 @@ def contradictions(seed, until=S):
             later = [time for value, time in outputs if value[0] >= number]
             if later:
                 times.append(min(later) - published)
-                if (min(later) - published) * NS + 100 * NS < way.best:
-                    found.append(f"{way.name}: {(min(later) - published) / MS} ms is faster than {way.best / NS / MS}")
+                if min(later) - published + ROUNDING < way.best:
+                    found.append(f"{way.name}: {(min(later) - published) / MS} ms is faster than {way.best / MS}")
             else:
                 times.append(until - published)
         at_most(f"way {way.name}", times, way.worst)

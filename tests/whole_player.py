@@ -2,7 +2,7 @@
 
 Messages pass the agent, the wire, the driver, the interrupt, the executor with its callbacks, and the way back. It follows rclc,
 rmw_microxrcedds and Micro-XRCE-DDS-Client, knows nothing of the analysis, and takes a description instead of a system.
-Times are in nanoseconds. What is not known is chosen by a random generator.
+Times are in picoseconds. What is not known is chosen by a random generator.
 """
 
 import heapq
@@ -12,7 +12,7 @@ from itertools import count
 
 from executor_kernel import Kernel, Listen, Run, Signal, Until
 
-US, MS, S = 1000, 1_000_000, 1_000_000_000
+US, MS, S = 10**6, 10**9, 10**12
 ACKNOWLEDGEMENT = 13
 #: Client heartbeats follow a silence of 100 ms, those of the agent come every 200 ms while something is not acknowledged.
 SILENCE, AGENT_HEARTBEAT = 100 * MS, 200 * MS
@@ -60,7 +60,7 @@ class Player:
 
     Parameters
     ----------
-    plan : the description as a mapping, with times in nanoseconds
+    plan : the description as a mapping, with times in picoseconds
     chance : a random generator
     """
 

@@ -1,4 +1,4 @@
-"""Executors that loop are simulated call by call as players execute them that share no code with the simulation."""
+"""Executors that loop: their bounds, and single rules by hand; `opponent.test_executors` compares each call with that of a player."""
 
 import random
 from dataclasses import replace
@@ -8,10 +8,7 @@ import test_whole_way
 from effort import IS_THOROUGH
 from hand_made_systems import WRITE, Proc, ticks
 from looping_executors import SPIN, US, WaitBehaviour, guard, looping, message, timer, waiting_publication
-from played_executors import Spans, play
-from simulated_calls import Least, as_planned, calls, first_difference, fixed, is_bare, on_wires, without_heartbeats
 from support import ROOT
-from whole_player import Player, S
 
 from amalthea_uros import simulate
 from amalthea_uros.analyze.system import analyze_system
@@ -27,55 +24,8 @@ from amalthea_uros.units import SECOND, Duration
 from amalthea_uros.uros.described import describe_content, describe_text
 
 BLOCK = 20
-SEEDS = range(3000 if IS_THOROUGH else 40)
 #: Analyses take longer.
 BOUNDED = range(500 if IS_THOROUGH else 8)
-
-
-# Executors of all kinds: triggers, LET, sessions, guard conditions, sleeps in ticks, slots.
-
-
-@pytest.mark.parametrize("block", range(0, len(SEEDS), BLOCK))
-def test_every_call_is_that_of_a_player(block):
-    compared = 0
-    for seed in SEEDS[block : block + BLOCK]:
-        app = fixed(seed)
-        if is_bare(app) or app.preempting:
-            continue
-        # It lets executors without a session take the messages of each other, and not notice it.
-        if len(app.system.executors) > 1 and app.system.executors[0].session is None:
-            continue
-        spans = Spans(costs=app.costs, spins=app.spins, sending={}, draw=lambda least, most: least)
-        simulated, until = calls(app.system, 300 * MS), 300 * MS
-        seen = play(app.system.executors, spans, until, random=Least(), priorities=app.priorities, start=0)
-        for one in seen:
-            for entity in one.entities:
-                responses = simulated[one.model.name, entity.handle.name]
-                assert first_difference(responses, entity.seen.responses) is None, (seed, one.model, entity.handle.name)
-                compared += len(responses)
-    assert compared, "nothing was called"
-
-
-# Whole applications: the host, the agent, wires, interrupts, acknowledgements, publications that wait.
-
-
-@pytest.mark.parametrize("block", range(0, len(SEEDS), BLOCK))
-def test_every_call_over_wires_is_that_of_a_player(block):
-    compared = 0
-    for seed in SEEDS[block : block + BLOCK]:
-        drawn = on_wires(seed)
-        if drawn is None:
-            continue
-        content, plan = drawn
-        system = describe_content(content).assembly.system
-        test_whole_way.prepared(content, plan)
-        plan["blocks"] = system.network.wires[0].keeps_sender
-        seen = Player(plan, Least()).play(S // 4)
-        for (_, handle), responses in calls(without_heartbeats(as_planned(system, plan)), S // 4 * 1000).items():
-            played = [time * 1000 for time in seen.responses[handle]]
-            assert first_difference(responses, played, tolerance=30_000) is None, (seed, handle, content)
-            compared += len(responses)
-    assert compared > 20, "hardly anything was called"
 
 
 @pytest.mark.parametrize("block", range(0, len(BOUNDED), BLOCK))
@@ -367,3 +317,34 @@ def test_accesses_of_a_runnable_that_other_tasks_call_too_stay_as_they_are():
     stepped = with_steps(replace(found, software=replace(found.software, runnables=(*others, calling, shared))))
     communication = {name: stepped.runnables[name].activities[-1].communication for name in ("log", "On_control")}
     assert communication == {"log": None, "On_control": Communication.EXPLICIT}
+
+
+SHARED_THREAD = """\
+amuros: 1
+name: shared
+hardware: {platform: single-core, frequency: 1 GHz}
+middleware:
+  multithread: true
+  transport: {serial: {baud_rate: 115200}}
+  executors:
+    - name: first
+      priority: 50
+      execution_time: 100 us
+      loop: [{spin_some: 0 ms}, {spin_some: 0 ms, executor: second}, {sleep: 10 ms}]
+    - {name: second, execution_time: 100 us}
+application:
+  nodes:
+    - name: node
+      timers:
+        - {name: one, period: 10 ms, phase: 10 ms, execution_time: 2 ms, runs_in: first}
+        - {name: two, period: 10 ms, phase: 10 ms, execution_time: 2 ms, runs_in: second}
+tasks:
+  - {name: equal, priority: 50, period: 7 ms, execution_time: 1 ms}
+"""
+
+
+def test_a_thread_keeps_its_turn_from_one_executor_to_the_next():
+    """A task of equal priority waits for both executors if it becomes ready while the first one is busy: up to 4.2 ms."""
+    system = describe_text(SHARED_THREAD).assembly.system
+    simulation = simulate_system(system, Options(duration=Duration(SECOND), mode=SimulationMode.BEST))
+    assert 4.5 * MS < simulation["equal"].response_time.max <= 5.2 * MS

@@ -123,11 +123,14 @@ def plan_iteration(m: Memory, process: int, executor: int) -> int:
 
 def _go_on(m: Memory, process: int, executor: int) -> int:
     """The next iteration follows at once: the thread keeps its turn among its equals."""
-    code = fire(m, m[executor + LOOP_STIMULUS], 0)
-    if code == 0 and m[executor + KEEPS_TURN]:
+    code, following = fire(m, m[executor + LOOP_STIMULUS], 0), m[executor + NEXT_PROCESS]
+    if code == 0 and following == process:
         size = QUEUE_CAPTURES + m[process + CAPTURES_END] - m[process + CAPTURES]
         place = m[process + FIRST_PLACE] + size
         if place == m[process + QUEUE] + m[PLACES] * size:
             place = m[process + QUEUE]
         m[place + QUEUE_SEQUENCE] = m[process + SEQUENCE]
+    elif code == 0:
+        # The job of the next executor of the thread has begun.
+        m[following + SEQUENCE] = m[process + SEQUENCE]
     return code

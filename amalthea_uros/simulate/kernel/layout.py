@@ -136,8 +136,10 @@ UNREAD_FIRST, UNREAD_LAST, KEPT, SLOTS, INBOX_SIZE = range(5)
 # A publication: its timeout, how often that passed; whether there was no room for the message, and how often.
 TIMEOUT_AFTER, TIMEOUTS, IS_REFUSED, REFUSALS, ANSWERED_BY, IS_ANSWERED, PUBLICATION_SIZE = range(7)
 
-# What an executor reads and waits with: its process, the messages, the timeout of its wait, and to what it is cut.
+# What an executor reads and waits with: its process, the messages, the timeout of its wait, to what it is cut, and how many messages
+# end it (0: all that are there).
 READER_PROCESS, INBOX, WAIT_TIMEOUT, RESOLUTION, MESSAGES_PER_WAIT, KEPT_END_WAIT, FLAGS_END_WAIT = range(7)
+NO_MESSAGE = -1
 # Its wait or publication: how long, until when, for which publication (0: for data), what it has read, and what it has to acknowledge.
 WAIT_FOR, WAIT_END, AWAITED, DATA_READ, REPLIES_LEFT, REPLY_AS, REPLY_ABOUT, WAIT_ALARM = range(7, 15)
 # What it sends reliably, and which parts of that it sends again. Whether it listens, for how long altogether, and until when.
@@ -146,9 +148,9 @@ NOT_LISTENING, BEGINS_TO_LISTEN, HAS_ASKED, LISTENS = range(4)
 # Its handles, and sets of them: it calls if all of one set are ready.
 HANDLES, HANDLES_END, TRIGGER_SETS, TRIGGER_SETS_END, IS_TRIGGERED = range(21, 26)
 # Its loop: a stream of sleeps, the least distance of their ends, the last end, a period, the time up to which it has planned, to what
-# that sleep is cut, and what begins an iteration; whether that is one of its own, or of the next executor of its thread.
+# that sleep is cut, and what begins the next iteration of its thread; the process of that, its own or of another executor.
 SLEEPS, PACE, LAST_WAKE, LOOP_PERIOD, INVOCATION, SLEEP_RESOLUTION, LOOP_STIMULUS, LOOP_ALARM = range(26, 34)
-KEEPS_TURN = 34
+NEXT_PROCESS = 34
 # If it is a thread of an executor of the host: that one, which handle it calls, and when that was released.
 THREAD_OF, CALLED_HANDLE, CALLED_SINCE, EXECUTOR_SIZE = range(35, 39)
 

@@ -48,7 +48,7 @@ def read(m: Memory, core: int, process: int, executor: int) -> int:
                 return HAS_TO_WAIT + code
             m[executor + LISTENING] = NOT_LISTENING
             return HAS_READ
-        if not awaited and (m[executor + DATA_READ] or _is_woken(m, executor)):
+        if not awaited and _is_woken(m, executor):
             m[executor + LISTENING] = NOT_LISTENING
             return IS_DONE
         if m[NOW] < m[executor + LISTENS_UNTIL]:
@@ -107,7 +107,12 @@ def _ask(m: Memory, core: int, process: int, executor: int) -> int:
 
 
 def _is_woken(m: Memory, executor: int) -> bool:
-    """Whether something that is kept already ends the wait."""
+    """Whether what was read ends the wait, or something that is kept already.
+
+    Who waits for no messages reads them for others, and continues to wait (micro-ROS/rmw_microxrcedds#305).
+    """
+    if m[executor + DATA_READ] and m[executor + MESSAGES_PER_WAIT] != NO_MESSAGE:
+        return True
     for place in range(m[executor + HANDLES], m[executor + HANDLES_END]):
         handle = m[place]
         if m[handle + KEPT_NUMBER]:

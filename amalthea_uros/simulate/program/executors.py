@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.executors.semantics.loops import SLEEP_RESOLUTION, returns_at_once, sleep_of
-from amalthea_uros.executors.semantics.readiness import is_message, shares_session, thread_of
+from amalthea_uros.executors.semantics.readiness import is_message, messages, shares_session, thread_of
 from amalthea_uros.executors.semantics.steps import IterationStep, iterations_name, session_lock, steps_of
 from amalthea_uros.perf.activities import Activity, Call, ProbabilitySwitch
 from amalthea_uros.perf.distributions import Boundaries
@@ -72,15 +72,14 @@ class ExecutorRecords:
         )
         of_thread = thread_of(executor, resources.context.system.executors)
         following = of_thread[(of_thread.index(executor) + 1) % len(of_thread)]
-        # The iteration of the last one is followed by that of the first.
-        begin = self._begin(executor) if executor is of_thread[-1] else layout.NEVER
+        begin = self._begin(executor) if executor is self._first_to_end(of_thread) else layout.NEVER
         fields = {
             layout.READER_PROCESS: resources.processes[executor.task],
             layout.INBOX: self.messages.inboxes[executor.name],
             layout.OUT_FLOW: self.flows.out_of(executor.name),
             layout.WAIT_TIMEOUT: time(loop.timeout),
             layout.RESOLUTION: time(waiting.resolution),
-            layout.MESSAGES_PER_WAIT: waiting.messages_per_wait or 0,
+            layout.MESSAGES_PER_WAIT: (waiting.messages_per_wait or 0) if messages(executor) else layout.NO_MESSAGE,
             layout.KEPT_END_WAIT: int(waiting.stored_data_ends_wait),
             layout.FLAGS_END_WAIT: int(waiting.guard_conditions_end_wait),
             layout.WAIT_ALARM: self.messages.lines.alarm(layout.END_OF_WAIT, record),
@@ -95,18 +94,22 @@ class ExecutorRecords:
             layout.INVOCATION: -1,
             layout.SLEEP_RESOLUTION: time(SLEEP_RESOLUTION),
             layout.LOOP_STIMULUS: resources.stimuli[iterations_name(following.name)],
-            layout.KEEPS_TURN: int(following is executor),
+            layout.NEXT_PROCESS: resources.processes.get(following.task, 0),
             layout.LOOP_ALARM: self.messages.lines.alarm(layout.NEXT_ITERATION, record, at=begin),
         }
         image.put(record, fields)
 
+    def _first_to_end(self, of_thread: Sequence[Executor]) -> Executor:
+        """The executor of a thread whose pause is the first one: the last one, or if phases are random that with the longest pause."""
+        is_random = self.resources.options.mode is SimulationMode.SAMPLED
+        return max(reversed(of_thread), key=_pause) if is_random else of_thread[-1]
+
     def _begin(self, executor: Executor) -> int:
-        """When the first iteration begins: at random, as its phase against everything else is not known."""
+        """When the first pause ends: at random, as its phase against everything else is not known."""
         if self.resources.options.mode is not SimulationMode.SAMPLED:
             return 0
         self.resources.assume_phase()
-        longest = max(executor.loop.sleep, executor.loop.period or 0)
-        return self.resources.time(self.resources.random_phase(f"executor {executor.name}") * longest >> 64)
+        return self.resources.time(self.resources.random_phase(f"executor {executor.name}") * _pause(executor) >> 64)
 
     def _sleeps(self, executor: Executor) -> int:
         """The stream of sleeps; 0 if it does not sleep."""
@@ -144,6 +147,11 @@ class ExecutorRecords:
         asked_at = self.messages.handles[executor, handle.name] + layout.RELEASED
         fields = {layout.EXECUTION_NUMBER: number, layout.ASKED_AT: asked_at}
         return self.resources.image.record(layout.EXECUTION_SIZE, fields)
+
+
+def _pause(executor: Executor) -> Time:
+    """The longest time between an iteration of an executor and the next one of its thread."""
+    return executor.place.sleep if executor.place is not None else max(executor.loop.sleep, executor.loop.period or 0)
 
 
 def _sleep_at(place: ThreadPlace) -> Interval[Time]:

@@ -151,7 +151,7 @@ class HostRecords:
             layout.WAIT_ALARM: self.lines.alarm(layout.END_OF_WAIT, record),
             layout.LOOP_STIMULUS: resources.stimuli[name],
             layout.LOOP_ALARM: self.lines.alarm(layout.NEXT_ITERATION, record, at=0),
-            layout.KEEPS_TURN: 1,
+            layout.NEXT_PROCESS: resources.processes[name],
             layout.THREAD_OF: executor,
         }
         image.put(record, fields)

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import simulated_calls as loops
 from opponent.executors.tally import Tally
 from played_executors import Spans, play
 from whole_player import Player, S
 
-from amalthea_uros.perf.executors import Executor, LoopKind
-from amalthea_uros.perf.system import System
 from amalthea_uros.units import MILLISECOND as MS
 from amalthea_uros.uros.described import describe_content
-
-#: An odd time by which each executor sleeps longer, so that no two things occur at the same instant.
-_APART = 137_000
 
 
 def different_calls(seed: int, tally: Tally) -> list[str]:
@@ -25,12 +18,7 @@ def different_calls(seed: int, tally: Tally) -> list[str]:
 
 def _of_executors(seed: int, tally: Tally) -> list[str]:
     app = loops.fixed(seed)
-    system, until = _apart(app.system), 300 * MS
-    # Who is first of two of equal priority is decided elsewhere.
-    is_tied = any(priority in app.priorities.values() for priority, *_ in app.preempting)
-    # Executors without a session take the messages of each other, as the player has it.
-    if loops.is_bare(app) or is_tied or (len(system.executors) > 1 and system.executors[0].session is None):
-        return []
+    system, until = app.system, 300 * MS
     simulated = loops.calls(system, until)
     spans = Spans(costs=app.costs, spins=app.spins, sending={}, draw=lambda least, most: least)
     found = []
@@ -54,21 +42,6 @@ def _of_executors(seed: int, tally: Tally) -> list[str]:
     return found
 
 
-def _apart(system: System) -> System:
-    executors = [_longer(each, _APART * number) for number, each in enumerate(system.executors, 1)]
-    return replace(system, executors=tuple(executors))
-
-
-def _longer(executor: Executor, time: int) -> Executor:
-    """An executor that sleeps longer, if it sleeps, also where its thread has others."""
-    loop, place = executor.loop, executor.place
-    if loop.kind is not LoopKind.SLEEPING or not loop.sleep:
-        return executor
-    if place is None:
-        return replace(executor, loop=replace(loop, sleep=loop.sleep + time, pace=loop.pace + time))
-    return replace(executor, place=replace(place, sleep=place.sleep + time)) if place.sleep else executor
-
-
 def _of_application(seed: int, tally: Tally) -> list[str]:
     drawn = loops.on_wires(seed)
     if drawn is None:
@@ -78,10 +51,8 @@ def _of_application(seed: int, tally: Tally) -> list[str]:
     loops.test_whole_way.prepared(content, plan)
     plan["blocks"] = system.network.wires[0].keeps_sender
     seen = Player(plan, loops.Least()).play(until)
-    for (_, handle), responses in loops.calls(loops.as_planned(system, plan), until * 1000).items():
-        played = [time * 1000 for time in seen.responses[handle]]
-        # The player counts in nanoseconds.
-        difference = loops.first_difference(responses, played, tolerance=30_000)
+    for (_, handle), responses in loops.calls(loops.as_planned(system, plan), until).items():
+        difference = loops.first_difference(responses, seen.responses[handle])
         if difference is not None:
             found.append(f"calls of an application: {handle}: {difference}")
         tally.calls["applications"] += len(responses)

@@ -10,7 +10,27 @@ from opponent.executors.descriptions import Section
 def constructs_of(content: Section) -> frozenset[str]:
     """The names of the constructs of a description, or of all controllers of a robot."""
     kinds = (_of_loops, _of_messages, _of_wire, _of_processes)
-    return frozenset(name for each in content.get("controllers", [content]) for kind in kinds for name in kind(each))
+    found = {name for each in content.get("controllers", [content]) for kind in kinds for name in kind(each)}
+    return frozenset(found | set(_of_robot(content)))
+
+
+def _of_robot(content: Section) -> Iterator[str]:
+    """What controllers and the host do for each other: messages and services."""
+    if "controllers" not in content:
+        return
+    yield f"{len(content['controllers'])} controllers"
+    nodes = content["host"].get("nodes", ())
+    for kind, name in (("subscriptions", "messages"), ("services", "a service"), ("timers", "a client")):
+        if any(kind in node for node in nodes):
+            yield f"{name} on the host"
+    served = [
+        {each.get("service", each["name"]) for each in controller["application"]["nodes"][0].get("services", ())}
+        for controller in content["controllers"]
+    ]
+    for number, controller in enumerate(content["controllers"]):
+        called = {each["service"] for each in controller["application"]["nodes"][0].get("clients", ())}
+        if any(called & other for other in served[:number] + served[number + 1 :]):
+            yield "a service of another controller"
 
 
 def _of_loops(content: Section) -> Iterator[str]:
