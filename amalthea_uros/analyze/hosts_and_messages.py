@@ -9,13 +9,14 @@ from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.executors.results import ExecutorResult
 from amalthea_uros.executors.semantics.loops import timing_context
 from amalthea_uros.perf.system import System
+from amalthea_uros.timing.activation.relays import sends_to_controllers
 from amalthea_uros.timing.basics.settings import Settings
 
 
 def solved(system: System, settings: Settings) -> Solution:
-    """The response times for unknown phases, with the messages of the host and of other controllers as these send them."""
+    """The response times for unknown phases, with the messages of the host and of controllers as these send them."""
     solution = solve(timing_context(system, settings))
-    if not solution.context.system.host.executors and len(solution.context.system.clients) == 1:
+    if not solution.context.system.host.executors and not sends_to_controllers(solution.context.system):
         return solution
     from amalthea_uros.analyze.host.handover import with_messages_of_others
 

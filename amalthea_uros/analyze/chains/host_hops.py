@@ -89,11 +89,10 @@ class HostHops:
             raise UnknownError(
                 f"{name_of(sent)!r} is not sent on as {name_of(received)!r}: the chain leaves out what receives one and sends the other"
             )
-        if sent.wire == received.wire:
-            return
         if difference := violated(received, self.host.releases):
             raise UnknownError(difference)
-        yield self._topic(plain_topic(received.topic))
+        if sent.wire != received.wire:
+            yield self._topic(plain_topic(received.topic))
 
     def losses(self, segment: HostSegment) -> Iterator[str]:
         """How messages can be lost on the path of a chain."""

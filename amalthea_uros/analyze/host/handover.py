@@ -1,9 +1,10 @@
-"""The messages that the host and other controllers send to a controller: how often they really come, instead of what is stated.
+"""The messages that the host and controllers send to a controller: how often they really come, instead of what is stated.
 
-A subscription on a controller states an interval and a jitter. If callbacks of the host or of another controller publish its topic,
-both follow from these: the controller is analysed with the interval of the publisher, and with the greater jitter. What it sends
-depends on that in turn, so that all sides are analysed until nothing changes (K. Richter 2005). If no interval and jitter describe what
-is sent, or the description contradicts itself, it is unknown how often the messages come, and so is everything that depends on them.
+A subscription on a controller states an interval and a jitter. If callbacks of the host or of a controller, this one included, publish
+its topic, both follow from these: the controller is analysed with the interval of the publisher, and with the greater jitter. What it
+sends depends on that in turn, so that all sides are analysed until nothing changes (K. Richter 2005). If no interval and jitter
+describe what is sent, or the description contradicts itself, it is unknown how often the messages come, and so is everything that
+depends on them.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.activation.relays import relayed
+from amalthea_uros.timing.activation.relays import latency_between, relayed
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, aggregated
 from amalthea_uros.units import Time, time_text
 
@@ -89,7 +90,24 @@ def _changes(stated: System, solution: Solution) -> list[tuple[Handle, Handle]]:
 
 def _sender(transmission: Transmission, releases: HostReleases) -> str:
     """Who sends a message to a controller."""
-    return "the host" if releases.topics.publishers(plain_topic(transmission.topic)) else "another controller"
+    if releases.topics.publishers(plain_topic(transmission.topic)):
+        return "the host"
+    return "the controller itself" if _is_own(transmission, releases) else "another controller"
+
+
+def _is_own(transmission: Transmission, releases: HostReleases) -> bool:
+    """Whether only the controller itself publishes what it receives."""
+    publishers = releases.topics.publishers(plain_topic(transmission.topic))
+    sent = relayed(transmission, releases.topics.solved.context.system)
+    return not publishers and all(each.wire == transmission.wire for each in sent)
+
+
+def _interval(real: PeriodicEvents, transmission: Transmission, releases: HostReleases) -> Time:
+    """The interval for which a controller is analysed: its own messages may be rarer than stated, as nothing relies on them to come."""
+    stated = releases.topics.solved.event_models.get(transmission.name)
+    if isinstance(stated, PeriodicEvents) and _is_own(transmission, releases):
+        return min(stated.period, real.period)
+    return real.period
 
 
 def _change(stated: Handle, analysed: Handle, sender: str) -> str:
@@ -100,14 +118,14 @@ def _change(stated: Handle, analysed: Handle, sender: str) -> str:
 
 
 def handed_over(releases: HostReleases) -> list[Transmission]:
-    """The messages that the host or another controller sends to a controller."""
+    """The messages that the host or a controller sends to a controller, its own ones among them."""
     topics, system = releases.topics, releases.topics.solved.context.system
     return [
         each
         for each in system.network.transmissions
         if each.direction is Direction.TO_CONTROLLER
         and each.purpose is Purpose.DATA
-        and (topics.publishers(plain_topic(each.topic)) or any(sent.wire != each.wire for sent in relayed(each, system)))
+        and (topics.publishers(plain_topic(each.topic)) or relayed(each, system))
     ]
 
 
@@ -122,9 +140,17 @@ def violated(transmission: Transmission, releases: HostReleases) -> str:
         return reason
     topic, stated = plain_topic(transmission.topic), releases.topics.solved.event_models.get(transmission.name)
     real, agent = _published(transmission, releases), _agent_jitter(transmission)
+    is_alone = len(relayed(transmission, releases.topics.solved.context.system)) == 1
+    if is_alone and _is_own(transmission, releases) and not isinstance(real, PeriodicEvents):
+        # What an executor without a loop sends is no interval and jitter; what is stated of it counts.
+        return ""
     if not isinstance(real, PeriodicEvents) or not isinstance(stated, PeriodicEvents):
         return f"more than one publisher sends {topic!r}, so that the interval of {transmission.callback!r} is not that of the messages"
-    if real.period != stated.period or real.jitter + agent > stated.jitter or stated.min_interarrival:
+    if (
+        _interval(real, transmission, releases) != stated.period
+        or real.jitter + agent > stated.jitter
+        or stated.min_interarrival
+    ):
         times = f"every {time_text(real.period)} with a jitter of up to {time_text(real.jitter)}"
         return f"{_sender(transmission, releases)} sends {topic!r} {times}, for which the controller is not analysed"
     return ""
@@ -138,12 +164,12 @@ def _published(transmission: Transmission, releases: HostReleases) -> EventModel
     UnknownError : their number has no bound.
     """
     topic, topics = plain_topic(transmission.topic), releases.topics
-    events = [releases.published(each) for each in topics.publishers(topic)]
-    # Agents also send on what controllers publish.
-    events += [topics.from_controller(each) for each in topics.transmissions(topic, Direction.TO_AGENT)]
-    return delayed(
-        aggregated(tuple(events)), _spread(topics.latency(topic), f"the latency of the topic {topic!r} is not specified")
-    )
+    why = f"the latency of the topic {topic!r} is not specified"
+    events = [delayed(releases.published(each), _spread(topics.latency(topic), why)) for each in topics.publishers(topic)]
+    system = topics.solved.context.system
+    for sent in relayed(transmission, system):
+        events.append(delayed(topics.from_controller(sent), _spread(latency_between(sent, transmission, system), why)))
+    return aggregated(tuple(events))
 
 
 def _agent_jitter(transmission: Transmission) -> Time:
@@ -171,12 +197,13 @@ def _with_real_times(system: System, transmission: Transmission, releases: HostR
     if not handles or not isinstance(arriving, Periodic | RelativePeriodic) or not isinstance(real, PeriodicEvents):
         return system
     jitter = max(real.jitter, *(handle.jitter for handle in handles))
-    changed = {handle: replace(handle, interval=real.period, jitter=jitter) for handle in handles}
+    interval = _interval(real, transmission, releases)
+    changed = {handle: replace(handle, interval=interval, jitter=jitter) for handle in handles}
     late = Uniform(lower=0, upper=jitter + agent)
     if isinstance(arriving, RelativePeriodic):  # what is stated without any jitter
-        stimulus = Periodic(name=arriving.name, period=real.period, jitter=late, origin=arriving.origin)
+        stimulus = Periodic(name=arriving.name, period=interval, jitter=late, origin=arriving.origin)
     else:
-        stimulus = replace(arriving, period=real.period, jitter=late, min_distance=None)
+        stimulus = replace(arriving, period=interval, jitter=late, min_distance=None)
     executors = tuple(
         replace(each, handles=tuple(changed.get(handle, handle) for handle in each.handles)) for each in system.executors
     )

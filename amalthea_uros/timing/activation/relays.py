@@ -23,6 +23,11 @@ def relayed(transmission: Transmission, system: System) -> list[Transmission]:
     ]
 
 
+def sends_to_controllers(system: System) -> bool:
+    """Whether agents send to a controller what the same or another one publishes."""
+    return any(relayed(each, system) for each in system.network.transmissions)
+
+
 def latency_between(sent: Transmission, received: Transmission, system: System) -> Span:
     """The time of a message from the agent of its sender to that of its receiver; unknown if it is not stated."""
     if sent.wire == received.wire:

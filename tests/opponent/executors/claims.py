@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
@@ -21,7 +20,6 @@ from amalthea_uros.simulate.observations import MetricObservation
 from amalthea_uros.simulate.options import Options, SimulationMode
 from amalthea_uros.simulate.results import Simulation
 from amalthea_uros.simulate.runs.run import simulate_system
-from amalthea_uros.timing.activation.relays import relayed
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import MILLISECOND, Duration
 from amalthea_uros.uros.described import describe_content
@@ -59,7 +57,7 @@ def false_claims(
     for options in runs or RUNS:
         simulation = simulate_system(system if heartbeats else without_heartbeats(system), options)
         run = f"{options.mode} {options.seed}"
-        found += [f"{run}: {text}" for text in (*_contradictions(analysis, simulation), *_refuted(analysis, simulation))]
+        found += [f"{run}: {text}" for text in (*contradictions(analysis, simulation), *_refuted(analysis, simulation))]
         for name, seen, bound in observed(analysis, simulation):
             greatest[name] = max(seen.max, greatest.get(name, (Fraction(0),))[0]), bound.most
         if options.mode is SimulationMode.BEST:
@@ -81,20 +79,6 @@ def runs_of(duration: int, seeds: Iterable[int]) -> list[Options]:
 
 #: The runs of an application by default.
 RUNS = runs_of(DURATION, (1, 2))
-
-
-def _contradictions(analysis: Analysis, simulation: Simulation) -> Iterator[str]:
-    """Those of `fuzzing`, without distances of messages that depend on what the description does not say.
-
-    How often a message comes back is stated for the subscription or the client, whatever its publisher does. Acknowledgements of the
-    client are sent when it reads, which can be in bursts; the analysis has those of callbacks, which take one message at a time.
-    """
-    system = analysis.solution.context.system
-    loose = {name for name, each in system.transmissions.items() if relayed(each, system)}
-    loose |= {each.acknowledges for each in system.transmissions.values() if each.acknowledges in loose}
-    for text in contradictions(analysis, simulation):
-        if not (set(text.split()) & loose and re.match(r"(activate|start|end)_to_", text)):
-            yield text
 
 
 def observed(analysis: Analysis, simulation: Simulation) -> Iterator[Seen]:
