@@ -18,7 +18,7 @@ from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.job_paths import JobDemand
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
 from amalthea_uros.timing.demand.overheads import COUNTED
-from amalthea_uros.timing.jobs.executed import states_mean
+from amalthea_uros.timing.jobs.executed import depends_on_messages, states_mean
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.allocation import allocated_cores
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess
@@ -118,7 +118,7 @@ def share_of_core(name: str, solution: Solution) -> Fraction | None:
 
 
 def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fraction]:
-    """The best, mean and worst load of a core; no mean if conditions may suppress activations, or execution times have none."""
+    """The best, mean and worst load of a core; no mean if conditions or messages decide on jobs, or times have none."""
     context = solution.context
     here = context.on_core(core)
     names = [item.name for item in here]
@@ -129,7 +129,12 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fr
         # How much is lost at least, and on average, is not known.
         return _load(names, core, solution, solution.rates_without_losses).best, None, load.worst
     polling = any(item.name in context.waiting and context.waiting[item.name].polls for item in here)
-    has_mean = not polling and all(states_mean(item.process, context.system) for item in here)
+    causing = reached(names, context.activations.triggering)
+    has_mean = (
+        not polling
+        and all(states_mean(item.process, context.system) for item in here)
+        and not any(depends_on_messages(name, context.system) for name in causing)
+    )
     return load.best, load.mean if has_mean else None, load.worst
 
 

@@ -80,9 +80,23 @@ def states_execution_time(process: Process, system: System) -> bool:
 
 def states_mean(process: Process, system: System) -> bool:
     """Whether the mean of all execution times of a process is stated; the middle between two bounds is none that anybody stated."""
+    if depends_on_messages(process.name, system):
+        return False
     demands = (each.demand for each in executed(process.activities, system) if isinstance(each, Execute))
     every = (ticks for demand in demands for ticks in (demand.ticks, *dict(demand.by_core_type).values()))
     return not any(isinstance(ticks, Bounds) for ticks in every)
+
+
+def depends_on_messages(process: str, system: System) -> bool:
+    """Whether a process is an executor of which nobody states how often it iterates, or which callbacks an iteration calls.
+
+    The branches of an iteration have weights only because a switch of the model needs some.
+    """
+    executor = system.executor_of_task.get(process)
+    if executor is None:
+        return False
+    activities = walk(system.processes[process].activities)
+    return executor.loop.period is None or any(isinstance(each, ProbabilitySwitch) for each in activities)
 
 
 def _is_stated(activity: object) -> bool:
