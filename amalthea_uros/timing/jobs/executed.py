@@ -88,7 +88,7 @@ def states_mean(process: Process, system: System) -> bool:
 
 
 def depends_on_messages(process: str, system: System) -> bool:
-    """Whether a process is an executor of which nobody states how often it iterates, or which callbacks an iteration calls.
+    """Whether a process is an executor of which it is not specified how often it iterates, or which callbacks an iteration calls.
 
     The branches of an iteration have weights only because a switch of the model needs some.
     """
