@@ -310,9 +310,11 @@ class Played:
         return bool(chosen)
 
     def _take(self, entity):
+        """A message leaves its place when its take begins; when in that time is not specified."""
+        release = entity.take(self.kernel.now)
         if entity.handle.take:
             yield Run(self.spans.draw(*self.spans.costs[entity.handle.take]))
-        return entity.take(self.kernel.now)
+        return release
 
     def _call(self, entity):
         cost = self.spans.draw(*self.spans.costs[entity.handle.runnable])

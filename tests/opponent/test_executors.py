@@ -58,7 +58,7 @@ def test_every_call_is_that_of_a_player():
 
 @pytest.mark.parametrize(
     "seed",
-    [128, 257, 561, 606, 1586, 3956],
+    [128, 257, 561, 606, 1586, 3956, 9920],
     ids=[
         "turn-of-a-thread",
         "session-that-is-free",
@@ -66,6 +66,7 @@ def test_every_call_is_that_of_a_player():
         "stored-by-others",
         "messages-for-others",
         "read-and-not-called",
+        "arrives-during-a-take",
     ],
 )
 def test_calls_that_once_differed(seed):
