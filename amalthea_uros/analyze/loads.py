@@ -125,11 +125,11 @@ def _loads(core: str, solution: Solution) -> tuple[Fraction, Fraction | None, Fr
     load, regular = _load(names, core, solution), _never_suppressed(names, solution)
     if regular != names:
         return _load(regular, core, solution).best, None, load.worst
-    if solution.sent_again.keys() & set(names):
+    causing = reached(names, context.activations.triggering)
+    if solution.sent_again.keys() & causing:
         # How much is lost at least, and on average, is not known.
         return _load(names, core, solution, solution.rates_without_losses).best, None, load.worst
     polling = any(item.name in context.waiting and context.waiting[item.name].polls for item in here)
-    causing = reached(names, context.activations.triggering)
     has_mean = (
         not polling
         and all(states_mean(item.process, context.system) for item in here)

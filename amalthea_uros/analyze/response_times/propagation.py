@@ -204,7 +204,7 @@ def _output(solution: Solution, responses: Mapping[str, Response], executors: Ex
     def output(process: Process, activations: Callable[[], EventModel], has_fixed_place: bool) -> EventModel:
         if process.name in solution.reasons:
             raise UnknownError(f"it is triggered by {process.name!r}, which could not be analysed")
-        events = activations()
+        events = _with_sent_again(process.name, activations(), executors)
         executor = context.system.executor_of_task.get(process.name)
         if executor is not None and sleep_of(executor).lower:
             # Between two rounds are the sleep and at least a whole round, from any point of the one to that of the other.

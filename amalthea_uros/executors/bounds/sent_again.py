@@ -54,9 +54,7 @@ def sent_again(
         again = _again(wire, age, processor, solved, distance)
         if again is not None and not losses_from_controller(wire):
             continue
-        names = {each.name for each in messages}
-        acknowledging = (each.name for each in system.network.transmissions if each.acknowledges in names)
-        models |= dict.fromkeys((*names, *acknowledging), UNBOUNDED if again is None else again)
+        models |= dict.fromkeys((each.name for each in messages), UNBOUNDED if again is None else again)
     return models
 
 
