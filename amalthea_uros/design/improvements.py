@@ -175,7 +175,8 @@ class Trial:
 
     Attributes
     ----------
-    count : of changed systems that were analysed
+    count : of changed systems whose analysis is known
+    known : what the analyses found; changes without an effect, or with that of another one, are analysed once
     """
 
     analysis: Analysis
@@ -184,6 +185,10 @@ class Trial:
     quantity: LatencyQuantity
     source: DescriptionOrigin | None
     count: int = 0
+    known: list[tuple[Configuration, Improvement | None]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.known.append((self.present, None))
 
     def prepared(self, candidate: ImprovingChange) -> Iterator[tuple[ImprovingChange, Configuration]]:
         """A candidate with its changed system; nothing if it is impossible, or changes how often messages come."""
@@ -207,14 +212,24 @@ class Trial:
         return replace(candidate, changes=self.source.changes_of(edited.assignments), is_stated=True)
 
     def tried(self, candidate: ImprovingChange, changed: Configuration, limit: Time | None) -> Improvement | None:
-        """The improvement by a changed system; None if the latency is not shorter than a limit (None: has no bound)."""
+        """The improvement by a changed system; None if the latency is not shorter than a limit (None: has no bound).
+
+        The limits of successive calls never rise, so that what was not shorter is not shorter now either.
+        """
+        for each, improvement in self.known:
+            if each == changed:
+                self.count += 1
+                return improvement and replace(improvement, change=candidate, differences=self._differences(candidate))
         try:
             after = analyze_while(*changed, partial(_is_shorter, self.chain, self.quantity, limit))
         except InvalidArgumentError:
             return None
         self.count += 1
-        if after is None:
-            return None
+        improvement = None if after is None else self._improvement(candidate, after)
+        self.known.append((changed, improvement))
+        return improvement
+
+    def _improvement(self, candidate: ImprovingChange, after: Analysis) -> Improvement | None:
         return _improvement(candidate, self._differences(candidate), self.chain, self.quantity, self.analysis, after)
 
     @property

@@ -182,3 +182,20 @@ def test_only_changes_that_are_found_are_analysed_for_all_phases(monkeypatch, ad
     monkeypatch.setattr(improvements_module, "analyze_while", counted)
     found = improvements(advanced, CHAIN)
     assert len(whole) == len(found.found) < found.tried
+
+
+def test_changes_with_the_same_effect_are_analysed_once(monkeypatch, advanced):
+    """Such as the bit rate of the bus, on which nothing in this system depends."""
+    systems = []
+
+    def counted(system, settings, is_wanted):
+        systems.append((system, settings))
+        return analyze_module.analyze_while(system, settings, is_wanted)
+
+    monkeypatch.setattr(improvements_module, "analyze_while", counted)
+    found = improvements(advanced, CHAIN)
+    present = advanced.analysis.solution.context
+    different = [each for number, each in enumerate(systems) if each not in systems[:number]]
+    assert systems == different
+    assert (present.system, present.settings) not in systems
+    assert len(systems) < found.tried
