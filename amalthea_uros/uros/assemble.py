@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding
@@ -16,7 +17,6 @@ from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
 from amalthea_uros.uros.chain_members import ChainMembers
-from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.memory import MemoryDemand, memory_of
 from amalthea_uros.uros.memory_findings import check_memory
 from amalthea_uros.uros.middleware.options import COUNTED, Option
@@ -30,6 +30,9 @@ from amalthea_uros.uros.processes import add_processes, check_unique_names
 from amalthea_uros.uros.profiles import stated_profile
 from amalthea_uros.uros.system import assembled_system
 from amalthea_uros.uros.transports.can import CanBus, ForeignFrame, bus_of
+
+if TYPE_CHECKING:
+    from amalthea_uros.uros.initialisation import Initialisation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,13 +63,21 @@ class Assembly(Brief):
     placement: str
     messages: tuple[BusMessage, ...]
     bus: CanBus | None
-    initialisation: Initialisation | None
     options: tuple[Option, ...]
     memory: MemoryDemand
     findings: tuple[Finding, ...]
     task_periods: tuple[Time, ...]
     priority_scale: PriorityScale
     controllers: Mapping[str, Assembly] = field(default_factory=dict)
+
+    @property
+    def initialisation(self) -> Initialisation | None:
+        """The initialisation of its client; None if nothing is known of it, and of a robot, whose controllers have clients."""
+        from amalthea_uros.uros.initialisation import initialisation
+
+        first = next((choice for choice in self.choices if choice.task == choice.executor), None)
+        period = None if first is None else first.period
+        return None if self.controllers else initialisation(self.description, self.profile, period)
 
     @property
     def pools(self) -> tuple[Option, ...]:
@@ -119,13 +130,12 @@ def assemble(
 
 
 def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Sequence[ForeignFrame]) -> Assembly:
-    application, middleware = context.description.application, context.description.middleware
-    options = context.profile.options(application)
+    middleware = context.description.middleware
+    options = context.profile.options(context.description.application)
     added = add_processes(context, options, database)
     system, members = assembled_system(context, added.callbacks, added.network)
     memory = memory_of(context.description, hardware, system, context.profile)
     check_memory(context, options, added.callbacks, memory, hardware)
-    first = next((choice for choice in added.choices if choice.task == choice.executor), None)
     return Assembly(
         description=context.description,
         profile=context.profile,
@@ -135,7 +145,6 @@ def _assembly(context: AssemblyContext, hardware: HardwareSection, database: Seq
         placement=added.placement,
         messages=added.messages,
         bus=bus_of(middleware.transport.can) if middleware.transport.can is not None else None,
-        initialisation=initialisation(application, middleware, context.profile, context.line, first.period if first else None),
         options=tuple(options),
         memory=memory,
         findings=tuple(context.notes.findings),

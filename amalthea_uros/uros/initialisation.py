@@ -15,12 +15,12 @@ from fractions import Fraction
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.named import Brief
-from amalthea_uros.spec.application import Application
-from amalthea_uros.spec.middleware import Middleware
+from amalthea_uros.spec.description import Description
 from amalthea_uros.units import Time
 from amalthea_uros.uros.application.created_entities import SESSION, CreatedEntity, created_entities
 from amalthea_uros.uros.creation_traffic import CreationTraffic, creation_traffic, round_trip
 from amalthea_uros.uros.middleware.profile import Profile
+from amalthea_uros.uros.transports.choice import line_of
 from amalthea_uros.uros.transports.line import Line
 
 _UNKNOWN = "no maximum is known: set 'initialisation.response_time'"
@@ -59,17 +59,16 @@ class Initialisation(Brief):
         return min(Fraction(1), Fraction(self.traffic.most_wire_time, self.min_time) + self.traffic.heartbeat_load)
 
 
-def initialisation(
-    application: Application, middleware: Middleware, profile: Profile, line: Line | None, period: Time | None
-) -> Initialisation | None:
-    """The initialisation of an application; None if nothing is known of it.
+def initialisation(description: Description, profile: Profile, period: Time | None) -> Initialisation | None:
+    """The initialisation of the application of a description; None if nothing is known of it.
 
     Parameters
     ----------
-    line : the wire; None if it is not described
+    profile : of its middleware
     period : of the task that creates entities in cycles; None if a thread waits for the responses
     """
-    entities, figures = created_entities(application, profile.middleware), profile.creation
+    middleware, line = description.middleware, line_of(description)
+    entities, figures = created_entities(description.application, profile.middleware), profile.creation
     stated = middleware.initialisation.response_time
     if not entities or (figures is None and period is None):
         return None

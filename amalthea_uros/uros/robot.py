@@ -60,7 +60,6 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
         placement="",
         messages=(),
         bus=None,
-        initialisation=None,
         options=(),
         memory=MemoryDemand(uses=(), stacks=separate_stacks(()), other_stacks=0, ram=None, budget=None),
         findings=tuple(

@@ -65,7 +65,8 @@ def _controllers(assembly: Assembly) -> list[tuple[Assembly, str]]:
 
 def _of_middleware(assembly: Assembly, of: str) -> Iterator[Section]:
     """The messages, the start and the pools of the middleware of a controller, and its memory."""
-    start = [] if assembly.initialisation is None else list(_start_texts(assembly.initialisation))
+    initialisation = assembly.initialisation
+    start = [] if initialisation is None else list(_start_texts(initialisation))
     yield section(f"Messages on the CAN bus{of} (bus load at most {_bus_load(assembly)})", _messages(assembly))
     yield section(f"Initialisation of the middleware{of}", Sentences(start))
     yield section(f"Static pools{of}", _pools(assembly))
