@@ -58,7 +58,7 @@ def findings_of(assembly: Assembly | None, analysis: Analysis) -> Iterator[Findi
 
 
 def _storage_advice(assembly: Assembly, analysis: Analysis) -> str:
-    storage = storage_of(assembly.profile, assembly.description.application, assembly.memory)
+    storage = storage_of(assembly.profile, assembly.description.application, assembly.options, assembly.memory)
     waiting = waiting_messages(assembly, analysis)
     return "" if storage is None or waiting is None else storage.advice(waiting.most, f"{waiting.most}, {waiting.why}")
 

@@ -38,8 +38,8 @@ def generated_memory(assembly: Assembly) -> MemoryDemand:
 
 def generated_storage(assembly: Assembly) -> MessageStorage | None:
     """The storage for messages with the options that are generated; None if the middleware has none."""
-    generated = with_generated_options(assembly.profile, assembly.options)
-    storage = storage_of(generated, assembly.description.application, generated_memory(assembly))
+    generated, application = with_generated_options(assembly.profile, assembly.options), assembly.description.application
+    storage = storage_of(generated, application, generated.options(application), generated_memory(assembly))
     # As many slots are generated as are needed.
     return None if storage is None else replace(storage, needed=storage.slots)
 

@@ -201,7 +201,8 @@ class _MetaComparison(Brief):
         """A value for an option, as far as the memory of the board has room for it."""
         if option.role is OptionRole.QUEUE and option.smallest is not None:
             static = self.profile.memory(self.application), built.memory(self.application)
-            storage = storage_of(built, self.application, self.memory.with_static(*static))
+            options = built.options(self.application)
+            storage = storage_of(built, self.application, options, self.memory.with_static(*static))
             if storage is not None:
                 return storage.advice(option.smallest, str(option.smallest))
         return f"Set it to {option.smallest}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from amalthea_uros._internal.ports import known_ports
 from amalthea_uros.diagnostics import Finding, Severity
@@ -20,7 +20,7 @@ from amalthea_uros.uros.storage import MessageStorage, storage_of
 
 def check_memory(
     context: AssemblyContext,
-    options: Iterable[Option],
+    options: Sequence[Option],
     callbacks: Iterable[Callback],
     memory: MemoryDemand,
     hardware: HardwareSection,
@@ -34,7 +34,7 @@ def check_memory(
     hardware : of the description, completed by its platform
     """
     findings = context.notes
-    storage = storage_of(context.profile, context.description.application, memory)
+    storage = storage_of(context.profile, context.description.application, options, memory)
     if storage is not None:
         _check_storage(callbacks, options, storage, findings)
     _check_stacks(context.description.middleware, findings)

@@ -6,7 +6,7 @@ in `memory`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.lazy_mapping import LazyMapping
 from amalthea_uros._internal.plural import enumerated
@@ -90,14 +90,16 @@ def _fit(count: int) -> str:
     return "1 slot fits" if count == 1 else f"{count or 'no'} slots fit"
 
 
-def storage_of(profile: Profile, application: Application, memory: MemoryDemand) -> MessageStorage | None:
+def storage_of(
+    profile: Profile, application: Application, options: Sequence[Option], memory: MemoryDemand
+) -> MessageStorage | None:
     """The storage of an application; None if its middleware has no slots.
 
     Parameters
     ----------
-    memory : with the options of the profile
+    options : of the profile
+    memory : with these options
     """
-    options = profile.options(application)
     option = next((each for each in options if each.role is OptionRole.QUEUE), None)
     if option is None or profile.slot_size is None or profile.slots is None:
         return None

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from amalthea_uros._internal.records import dataclass, fields
+from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.resources import yaml_data
 from amalthea_uros.diagnostics import Location
 from amalthea_uros.perf.named import Brief
@@ -108,7 +108,7 @@ class Option(OptionRow):
     @classmethod
     def of(cls, row: OptionRow, *, needed: int | None, available: int, is_stated: bool, without_effect: str = "") -> Self:
         """The option of a row of the table."""
-        known = {each.name: getattr(row, each.name) for each in fields(row)}
+        known = {name: getattr(row, name) for name in OptionRow.__annotations__}
         return cls(**known, needed=needed, available=available, is_stated=is_stated, without_effect=without_effect)
 
     @property

@@ -25,7 +25,7 @@ from amalthea_uros.uros.application.created_entities import SESSION, CreatedEnti
 from amalthea_uros.uros.application.messages import MessageKind
 from amalthea_uros.uros.middleware.options import Option, OptionRow
 from amalthea_uros.uros.middleware.profile import CreationFigures, Heartbeat, MemoryUse, Sending
-from amalthea_uros.uros.middleware.xrce_dds.build import rows
+from amalthea_uros.uros.middleware.xrce_dds.build import XrceBuild, rows
 from amalthea_uros.uros.middleware.xrce_dds.messages import MessageLayout, contents_of
 
 #: Bytes of a session, besides its buffers.
@@ -159,7 +159,7 @@ class XrceDds(MessageLayout):
 
     def memory(self, application: Application) -> Sequence[MemoryUse]:
         """Its static memory with the options of the description."""
-        values = {option.name: option.available for option in self.options(application)}
+        values = _available(self.build)
         sessions, slots = values["RMW_UXRCE_MAX_SESSIONS"], values["RMW_UXRCE_MAX_HISTORY"]
         mtu, (inputs, outputs) = self.build.mtu, self.build.histories
         session = MemoryUse(
@@ -188,18 +188,23 @@ class XrceDds(MessageLayout):
 
 def _options(application: Application, layout: MessageLayout) -> Iterator[Option]:
     """The build options; those that count only where they are given are left out where they are not."""
-    needed, build = _needs(application, layout), layout.build
-    for name, row in rows().items():
-        stated = build.stated(row)
-        if stated is None and row.default is None:
-            continue
-        available = build.value(name)
-        if name == "RMW_UXRCE_MAX_TOPICS" and available < 0:
-            available = sum(build.value(f"RMW_UXRCE_MAX_{kind}") for kind in ("PUBLISHERS", "SUBSCRIPTIONS"))
-        without_effect = build.without_effect(name) if stated is not None else ""
+    needed, build, table = _needs(application, layout), layout.build, rows()
+    for name, available in _available(build).items():
+        is_stated = build.stated(table[name]) is not None
+        without_effect = build.without_effect(name) if is_stated else ""
         yield Option.of(
-            row, needed=needed.get(name), available=available, is_stated=stated is not None, without_effect=without_effect
+            table[name], needed=needed.get(name), available=available, is_stated=is_stated, without_effect=without_effect
         )
+
+
+def _available(build: XrceBuild) -> dict[str, int]:
+    """The values of the build options, without those that count only where they are given and are not."""
+    values = {
+        name: build.value(name) for name, row in rows().items() if row.default is not None or build.stated(row) is not None
+    }
+    if values["RMW_UXRCE_MAX_TOPICS"] < 0:
+        values["RMW_UXRCE_MAX_TOPICS"] = values["RMW_UXRCE_MAX_PUBLISHERS"] + values["RMW_UXRCE_MAX_SUBSCRIPTIONS"]
+    return values
 
 
 def _needs(application: Application, layout: MessageLayout) -> dict[str, int]:
