@@ -22,7 +22,6 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult
 from amalthea_uros.executors.results import ExecutorResult
-from amalthea_uros.judge.summary import summarize
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.releases import (
     ExternalInput,
@@ -125,15 +124,13 @@ def _analysis(
     chains = Results(known.get(chain.name) or over_all_phases(chain, evaluation) for chain in system.events.chains)
     verdicts = evaluate_requirements(system, processes, callbacks, context.notes)
     requirements = Results((*verdicts, *ConstraintEvaluator(evaluation, {chain.name: chain for chain in chains}).all()))
-    processors = loads or Results(processor_results(solution))
     return Analysis(
         solution=solution,
-        processors=processors,
+        processors=loads or Results(processor_results(solution)),
         processes=processes,
         callbacks=callbacks,
         chains=chains,
         requirements=requirements,
-        summary=summarize(processors, (*processes, *requirements), context),
         assumptions=tuple(context.notes.assumptions),
         findings=tuple(context.notes.found),
         executors=executors,

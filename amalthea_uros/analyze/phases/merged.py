@@ -21,7 +21,6 @@ from amalthea_uros.analyze.results.chains import ChainResult, LatencyValue
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessResult, RequirementResult
 from amalthea_uros.judge.evidence import Ends
 from amalthea_uros.judge.limits import SystemLimit
-from amalthea_uros.judge.summary import summarize
 from amalthea_uros.judge.verdict import WORST_FIRST, prove
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.basics.quantities import jitter_of
@@ -57,7 +56,6 @@ def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Soluti
     chains = []
     for index, of_chain in enumerate(cases.of_chains):
         chains.append(_merged_chain([analyses[number].chains[index] for number in of_chain], list(of_chain.values())))
-    requirements = Results(_requirements(list(analyses.values())))
     return replace(
         first,
         solution=solution,
@@ -65,8 +63,7 @@ def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Soluti
         processes=Results(processes),
         callbacks=Results(callbacks),
         chains=Results(chains),
-        requirements=requirements,
-        summary=summarize(first.processors, (*processes, *requirements), solution.context),
+        requirements=Results(_requirements(list(analyses.values()))),
         assumptions=_each_once(analyses.values(), lambda analysis: analysis.assumptions),
         findings=_each_once(analyses.values(), lambda analysis: analysis.findings),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
@@ -12,7 +13,7 @@ from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.chains import ChainResult
 from amalthea_uros.analyze.results.processes import CallbackResult, ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.diagnostics import Finding
-from amalthea_uros.judge.summary import Summary
+from amalthea_uros.judge.summary import Summary, summarize
 from amalthea_uros.perf.constraints import LatencyConstraint
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ Judged: TypeAlias = ProcessResult | RequirementResult
 SystemSummary: TypeAlias = Summary[Judged, ProcessorResult]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Analysis(Shown):
     """The results for a system.
 
@@ -32,7 +33,6 @@ class Analysis(Shown):
     solution : the response times with their timing context, for explanations and proposals; for unknown phases, any job may take
         what comes from outside
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
-    summary : whether everything is met, and what is missed or unknown
     executors : those that spin in loops
     host : the executors of the host
     assumptions : on which the numbers are based
@@ -46,7 +46,6 @@ class Analysis(Shown):
     callbacks: Results[CallbackResult]
     chains: Results[ChainResult]
     requirements: Results[RequirementResult]
-    summary: SystemSummary
     assumptions: tuple[str, ...]
     findings: tuple[Finding, ...]
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
@@ -58,6 +57,11 @@ class Analysis(Shown):
         if self.requirements:
             parts.append(counted(len(self.requirements), "requirement"))
         return f"<Analysis of {', '.join(parts)}; schedulable: {self.summary.schedulable}>"
+
+    @cached_property
+    def summary(self) -> SystemSummary:
+        """Whether everything is met, and what is missed or unknown."""
+        return summarize(self.processors, (*self.processes, *self.requirements), self.solution.context)
 
     @property
     def of_periodic_executors(self) -> tuple[CallbackResult, ...]:
