@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding
@@ -17,6 +16,7 @@ from amalthea_uros.uros.assembly.context import AssemblyContext
 from amalthea_uros.uros.assembly.hardware import controller_of
 from amalthea_uros.uros.assembly.planned import PriorityScale
 from amalthea_uros.uros.chain_members import ChainMembers
+from amalthea_uros.uros.initialisation import Initialisation, initialisation
 from amalthea_uros.uros.memory import MemoryDemand, memory_of
 from amalthea_uros.uros.memory_findings import check_memory
 from amalthea_uros.uros.middleware.options import COUNTED, Option
@@ -30,9 +30,6 @@ from amalthea_uros.uros.processes import add_processes, check_unique_names
 from amalthea_uros.uros.profiles import stated_profile
 from amalthea_uros.uros.system import assembled_system
 from amalthea_uros.uros.transports.can import CanBus, ForeignFrame, bus_of
-
-if TYPE_CHECKING:
-    from amalthea_uros.uros.initialisation import Initialisation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,8 +70,6 @@ class Assembly(Brief):
     @property
     def initialisation(self) -> Initialisation | None:
         """The initialisation of its client; None if nothing is known of it, and of a robot, whose controllers have clients."""
-        from amalthea_uros.uros.initialisation import initialisation
-
         first = next((choice for choice in self.choices if choice.task == choice.executor), None)
         period = None if first is None else first.period
         return None if self.controllers else initialisation(self.description, self.profile, period)
