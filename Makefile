@@ -6,6 +6,10 @@ BIN := $(VENV)/bin
 DIST ?= dist
 READY := $(VENV)/.ready
 
+# Bytecode is compiled when it is needed, once for all processes, where the tests keep it; most of what is installed never is needed.
+export PYTHONPYCACHEPREFIX ?= $(CURDIR)/build/compiled/python
+INSTALL = $(BIN)/python -m pip install --quiet --no-compile
+
 .PHONY: demo test check gen bench docs site wheel clean
 
 demo: $(READY)
@@ -54,7 +58,7 @@ gen: $(READY)
 
 # Measures, and writes docs/benchmarks.md; takes some minutes.
 bench: $(READY)
-	$(BIN)/python -m pip install --quiet --editable '.[bench]'
+	$(INSTALL) --editable '.[bench]'
 	$(BIN)/python tools/generate_benchmarks.py --measure
 
 # The pages are Markdown; their examples are executed and their output is compared.
@@ -63,7 +67,7 @@ docs: $(READY)
 
 # The same pages as a site, in build/site.
 site: $(READY)
-	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	$(INSTALL) --editable '.[docs]'
 	$(BIN)/python -m mkdocs build --strict
 
 # What is published: the source distribution and the wheel.
@@ -73,8 +77,8 @@ wheel: $(READY)
 $(READY): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, set PYTHON=...")'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --editable '.[dev]'
+	$(INSTALL) --upgrade pip
+	$(INSTALL) --editable '.[dev]'
 	@touch $@
 
 clean:
