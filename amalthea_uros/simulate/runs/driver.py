@@ -83,12 +83,13 @@ class KernelDriver:
 
     def _place_rows(self, count: int) -> None:
         """Have places for a number of rows of each kind."""
-        for first, end, size in _ROW_KINDS:
-            # Without a trace there are no events; one place, so that the kernel does not find that there is none left.
-            places = size * count if first != layout.EVENTS or self.traced[1] > 0 else 1
-            self._regions[first] = self._append(places + size * _MARGIN)
-            self.memory[first] = self._regions[first]
-            self.memory[end] = self._regions[first] + places
+        # Without a trace there are no events; one place, so that the kernel does not find that there is none left.
+        places = [size * count if first != layout.EVENTS or self.traced[1] > 0 else 1 for first, _, size in _ROW_KINDS]
+        place = self._append(sum(places) + _MARGIN * sum(size for _, _, size in _ROW_KINDS))
+        for (first, end, size), length in zip(_ROW_KINDS, places, strict=True):
+            self._regions[first] = self.memory[first] = place
+            self.memory[end] = place + length
+            place += length + size * _MARGIN
 
     @property
     def has_ended_early(self) -> bool:
@@ -204,7 +205,10 @@ class KernelDriver:
         """More memory at the end; where it begins."""
         place = len(self.memory)
         if self.is_compiled:
-            self.memory = cast(Memory, np.concatenate((self.memory, np.zeros(size, np.int64))))
+            # Zeros take no memory before they are used.
+            grown = np.zeros(place + size, np.int64)
+            grown[:place] = self.memory
+            self.memory = cast(Memory, grown)
         else:
             self.memory += [0] * size
         return place
