@@ -3,7 +3,7 @@
 It is a process of its own and not that of the tests, as a copy of that one, with all tests, takes a multiple of the time.
 """
 
-import json
+import marshal
 import os
 import runpy
 import signal
@@ -29,12 +29,16 @@ IS_POSSIBLE = hasattr(os, "fork") and hasattr(socket, "SOCK_SEQPACKET")
 
 #: What a shell finds as `amuros`.
 CLIENT = """#!{python} -IS
-import json, os, socket, sys
+# Modules of Python that are not built in would take half of the time.
+import marshal, os, sys
+from _socket import AF_UNIX, SCM_RIGHTS, SOCK_SEQPACKET, SOL_SOCKET, socket
 
-with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as server:
-    server.connect({address!r})
-    socket.send_fds(server, [json.dumps([sys.argv[1:], os.getcwd(), dict(os.environ)]).encode()], [0, 1, 2])
-    sys.exit(int(server.recv(16) or 1))
+server = socket(AF_UNIX, SOCK_SEQPACKET)
+server.connect({address!r})
+streams = b"".join([number.to_bytes(4, sys.byteorder) for number in (0, 1, 2)])
+request = marshal.dumps((sys.argv[1:], os.getcwd(), dict(os.environ)))
+server.sendmsg([request], [(SOL_SOCKET, SCM_RIGHTS, streams)])
+sys.exit(int(server.recv(16) or 1))
 """
 #: Bytes of a request: the words, the folder and the environment of a command.
 _REQUEST = 1 << 18
@@ -65,7 +69,7 @@ def started(words: Sequence[str], folder: Path, streams: Sequence[int]) -> socke
     """What will receive how a command ends that is started with standard streams."""
     connection = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     connection.connect(str(address()))
-    socket.send_fds(connection, [json.dumps([words, str(folder), dict(os.environ)]).encode()], streams)
+    socket.send_fds(connection, [marshal.dumps((words, str(folder), dict(os.environ)))], streams)
     return connection
 
 
@@ -113,7 +117,7 @@ def _tell(connection: socket.socket, request: bytes, streams: Sequence[int]) -> 
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     child = os.fork()
     if child == 0:
-        words, folder, environment = json.loads(request)
+        words, folder, environment = marshal.loads(request)
         connection.close()
         os.environ.clear()
         os.environ.update(environment)
