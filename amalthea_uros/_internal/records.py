@@ -11,8 +11,10 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, Field
+from functools import cache
 from operator import attrgetter
 from reprlib import recursive_repr
+from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -163,17 +165,38 @@ def _constructor(owner: Any, *, frozen: bool) -> Any:
     every = [each for each in dataclasses.fields(owner) if each.init]
     given = [each for each in every if not each.kw_only]
     named = [each for each in every if each.kw_only]
+    others = [each for each in dataclasses.fields(owner) if not each.init]
+    places = {f"_{number}": each for number, each in enumerate([*given, *named, *others])}
     scope = {"__name__": owner.__module__, "_set": object.__setattr__, "_factory": _FACTORY}
-    head = ", ".join(["self", *[each.name for each in given], *(["*", *[each.name for each in named]] if named else [])])
-    lines = [_assignment(each, scope, frozen=frozen) for each in dataclasses.fields(owner) if _is_assigned(each, owner)]
+    lines = [_assignment(each, place, scope, frozen=frozen) for place, each in places.items() if _is_assigned(each, owner)]
     lines += ["self.__post_init__()"] if hasattr(owner, "__post_init__") else []
-    exec(f"def __init__({head}): {'; '.join(lines) or 'pass'}", scope)
-    function: Any = scope["__init__"]
+    head = ", ".join(["self", *[place for place, each in places.items() if each.init]])
+    code = _template(f"def __init__({head}): {'; '.join(lines) or 'pass'}")
+    code = _named(code, {place: each.name for place, each in places.items()})
+    function: Any = FunctionType(code.replace(co_argcount=1 + len(given), co_kwonlyargcount=len(named)), scope)
     function.__defaults__ = tuple(_defaults(given).values())
     function.__kwdefaults__ = _defaults(named)
     function.__qualname__ = f"{owner.__qualname__}.__init__"
     function.__annotations__ = {each.name: each.type for each in every} | {"return": None}
     return function
+
+
+@cache
+def _template(source: str) -> CodeType:
+    """The code of a constructor with numbers for names: to compile one takes long, and many classes differ in their names only."""
+    scope: dict[str, Any] = {}
+    exec(source, scope)
+    code: CodeType = scope["__init__"].__code__
+    return code
+
+
+def _named(code: CodeType, names: Mapping[str, str]) -> CodeType:
+    """The code with the names of its parameters and of the attributes that it sets."""
+
+    def own(words: tuple[Any, ...]) -> tuple[Any, ...]:
+        return tuple([names.get(each, each) for each in words])
+
+    return code.replace(co_varnames=own(code.co_varnames), co_names=own(code.co_names), co_consts=own(code.co_consts))
 
 
 def _defaults(parameters: Iterable[Field[Any]]) -> dict[str, Any]:
@@ -197,16 +220,16 @@ def _is_assigned(one: Field[Any], owner: Any) -> bool:
     return one.init or one.default_factory is not MISSING or (one.default is not MISSING and "__slots__" in owner.__dict__)
 
 
-def _assignment(one: Field[Any], scope: dict[str, Any], *, frozen: bool) -> str:
-    """A statement of a constructor; what it refers to is added to its scope."""
-    value = one.name
+def _assignment(one: Field[Any], place: str, scope: dict[str, Any], *, frozen: bool) -> str:
+    """A statement of a constructor, with a place instead of the name; what it refers to is added to its scope."""
+    value = place
     if one.default_factory is not MISSING:
-        scope[f"_make_{one.name}"] = one.default_factory
-        value = f"_make_{one.name}() if {one.name} is _factory else {one.name}" if one.init else f"_make_{one.name}()"
+        scope[f"_make{place}"] = one.default_factory
+        value = f"_make{place}() if {place} is _factory else {place}" if one.init else f"_make{place}()"
     elif not one.init:
-        scope[f"_default_{one.name}"] = one.default
-        value = f"_default_{one.name}"
-    return f'_set(self, "{one.name}", {value})' if frozen else f"self.{one.name} = {value}"
+        scope[f"_default{place}"] = one.default
+        value = f"_default{place}"
+    return f'_set(self, "{place}", {value})' if frozen else f"self.{place} = {value}"
 
 
 def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
