@@ -23,7 +23,14 @@ if TYPE_CHECKING:
     from dataclasses import fields as fields
     from dataclasses import replace as replace
 else:
-    field, fields, replace = dataclasses.field, dataclasses.fields, dataclasses.replace
+    field, fields = dataclasses.field, dataclasses.fields
+
+    def replace(one: Any, /, **changes: Any) -> Any:
+        """As `dataclasses.replace`, which examines all fields for each object anew."""
+        for name in _parameters_of(type(one)):
+            if name not in changes:
+                changes[name] = getattr(one, name)
+        return type(one)(**changes)
 
     def dataclass(cls: Any = None, /, **options: bool) -> Any:
         """As `dataclasses.dataclass`, with the options `frozen`, `slots`, `kw_only`, `eq`, `repr` and `order`."""
@@ -161,6 +168,11 @@ def _positional(owner: Any) -> tuple[str, ...]:
     return tuple([each.name for each in dataclasses.fields(owner) if each.init and not each.kw_only])
 
 
+@cache
+def _parameters_of(kind: Any) -> tuple[str, ...]:
+    return tuple([each.name for each in dataclasses.fields(kind) if each.init])
+
+
 def _constructor(owner: Any, *, frozen: bool) -> Any:
     every = [each for each in dataclasses.fields(owner) if each.init]
     given = [each for each in every if not each.kw_only]
@@ -168,6 +180,7 @@ def _constructor(owner: Any, *, frozen: bool) -> Any:
     others = [each for each in dataclasses.fields(owner) if not each.init]
     places = {f"_{number}": each for number, each in enumerate([*given, *named, *others])}
     scope = {"__name__": owner.__module__, "_set": object.__setattr__, "_factory": _FACTORY}
+    scope |= {f"_set{place}": _setter(each, owner) for place, each in places.items()} if frozen else {}
     lines = [_assignment(each, place, scope, frozen=frozen) for place, each in places.items() if _is_assigned(each, owner)]
     lines += ["self.__post_init__()"] if hasattr(owner, "__post_init__") else []
     head = ", ".join(["self", *[place for place, each in places.items() if each.init]])
@@ -229,7 +242,15 @@ def _assignment(one: Field[Any], place: str, scope: dict[str, Any], *, frozen: b
     elif not one.init:
         scope[f"_default{place}"] = one.default
         value = f"_default{place}"
-    return f'_set(self, "{place}", {value})' if frozen else f"self.{place} = {value}"
+    if not frozen:
+        return f"self.{place} = {value}"
+    return f'_set(self, "{place}", {value})' if scope[f"_set{place}"] is None else f"_set{place}(self, {value})"
+
+
+def _setter(one: Field[Any], owner: Any) -> Any:
+    """The setter of the slot of a field, which need not look for it by its name; None without a slot."""
+    found = next((each.__dict__[one.name] for each in owner.__mro__ if one.name in each.__dict__), None)
+    return getattr(found, "__set__", None)
 
 
 def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:

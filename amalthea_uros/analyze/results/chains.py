@@ -32,7 +32,7 @@ class LatencyQuantity(StrEnum):
     @property
     def is_upper(self) -> bool:
         """Whether it is a maximum, so that bounds are upper bounds."""
-        return self.value.startswith("max")
+        return self.startswith("max")
 
     @property
     def is_reaction(self) -> bool:
@@ -42,7 +42,7 @@ class LatencyQuantity(StrEnum):
     @property
     def is_mean(self) -> bool:
         """Whether it is a mean."""
-        return self.value.startswith("mean")
+        return self.startswith("mean")
 
 
 #: The quantities that can be explained.
