@@ -269,9 +269,11 @@ def by_schedule(stage: Stage, solution: Solution, unit: int) -> ReadWriteBounds 
             until=found.until * unit // time_base,
         )
 
+    pessimistic = read_write_times(early, late)
+    is_one_run = early.jobs is late.jobs and not inside and unit % time_base == 0
     return ReadWriteBounds(
-        pessimistic=read_write_times(early, late),
-        optimistic=read_write_times(late, early),
+        pessimistic=pessimistic,
+        optimistic=pessimistic if is_one_run else read_write_times(late, early),
         steady_state_start=found.steady_state_start * unit // time_base,
     )
 

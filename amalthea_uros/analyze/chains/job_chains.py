@@ -202,7 +202,7 @@ def build_job_chains(chain: Sequence[ReadWriteTimes], steady_state_start: Time) 
         **{name: getattr(own, name) for name in _TIMES},
         inputs=_inputs(whole, np.concatenate([based, _jobs_in(last, start, start + cycle + length)]), start + cycle),
         before=_latencies(whole, first_jobs, based),
-        possible=_possible(whole, np.setdiff1d(last_jobs, based, assume_unique=True)),
+        possible=_possible(whole, np.delete(last_jobs, based)),
     )
 
 

@@ -135,9 +135,9 @@ class ReadWriteBounds:
             longer = times.extended(max(times.until, begin) + 2 * cycle)
             return longer.selected(np.arange(first - 1, len(longer.releases), prescaler), cycle)
 
-        return replace(
-            self, pessimistic=selected(self.pessimistic), optimistic=selected(self.optimistic), steady_state_start=begin
-        )
+        pessimistic = selected(self.pessimistic)
+        optimistic = pessimistic if self.optimistic is self.pessimistic else selected(self.optimistic)
+        return replace(self, pessimistic=pessimistic, optimistic=optimistic, steady_state_start=begin)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
