@@ -152,6 +152,7 @@ class Pool:
         BrokenProcessPool("a process was terminated abruptly"),
         # It closes its queues while another process is started that shall have them, or that process is the one that is killed.
         OSError("handle is closed"),
+        ValueError("bad value(s) in fds_to_keep"),
         BrokenPipeError("broken pipe"),
         # It has noted that it accepts nothing, but not yet why.
         RuntimeError("cannot schedule new futures after shutdown"),

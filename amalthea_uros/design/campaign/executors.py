@@ -104,8 +104,9 @@ def processes(count: int) -> Executor:
 
 
 #: What a pool raises at more work when a process was killed. If it knows: `RuntimeError`, of which `BrokenProcessPool` is a kind.
-#: `OSError` if it closes its queues while it starts another process, or if the one that it starts was killed.
-_BREAKING = (RuntimeError, OSError)
+#: `OSError` if it closes its queues while it starts another process, or if the one that it starts was killed; `ValueError` if that
+#: process was to be given what is closed then (multiprocessing `spawnv_passfds`).
+_BREAKING = (RuntimeError, OSError, ValueError)
 
 
 class _Pool:
