@@ -19,8 +19,8 @@ application:
     - name: node
       subscriptions:
         - {{name: drive, topic: cmd_vel, rate: 4 Hz, message_size: 48 B, execution_time: 100 us, writes: [speed], publishes: [odom]}}
-        - {{name: on_odom, topic: odom, rate: 4 Hz, message_size: 4 B, execution_time: 100 us}}
-        - {{name: log, topic: odom, rate: 4 Hz, message_size: 4 B, execution_time: 100 us}}
+        - {{name: on_odom, topic: odom, rate: 4 Hz, jitter: 10 ms, message_size: 4 B, execution_time: 100 us}}
+        - {{name: log, topic: odom, rate: 4 Hz, jitter: 10 ms, message_size: 4 B, execution_time: 100 us}}
         - {{name: stop, topic: halt, rate: 1 Hz, message_size: 4 B, execution_time: 100 us, {stop}}}
       publishers: [{{topic: odom, message_size: 4 B, reliability: best-effort}}]
 tasks:

@@ -39,6 +39,20 @@ def test_the_times_of_the_publisher_count_instead_of_what_is_stated():
     assert distances(analysis).min <= observed.min < 95 * MILLISECOND
 
 
+def test_a_task_of_a_callback_is_analysed_only_for_what_is_stated():
+    """Its period was chosen for that: the messages of an executor without a loop need a jitter that covers what is sent."""
+    text = STATED.replace("loop: {spin: 1 s}", "period: 30 ms")
+    analysis = amuros.analyze(text)
+    assert analysis.processes["Take"].response is None
+    assert "the controller itself sends 't' every 100 ms with a jitter of up to" in str(
+        [each.message for each in analysis.findings]
+    )
+    covered = text.replace("interval: 100 ms", "interval: 100 ms, jitter: 60 ms")
+    analysis = amuros.analyze(covered)
+    assert not [each for each in analysis.findings if each.rule.startswith("HST")]
+    assert distances(analysis).min <= distances(amuros.simulate(covered, "10 s")).min < 95 * MILLISECOND
+
+
 def test_a_greater_jitter_that_is_stated_remains():
     analysis = amuros.analyze(STATED.replace("interval: 100 ms", "interval: 100 ms, jitter: 50 ms"))
     assert "HST003" not in [each.rule for each in analysis.findings]

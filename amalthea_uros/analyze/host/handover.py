@@ -24,7 +24,13 @@ from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, p
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.relays import latency_between, relayed
-from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, aggregated
+from amalthea_uros.timing.event_models.models import (
+    AggregatedEventModel,
+    EventModel,
+    PeriodicEvents,
+    aggregated,
+    periodic_bound,
+)
 from amalthea_uros.units import Time, time_text
 
 #: If the jitter still grows after so many analyses of both sides, the last difference is reported.
@@ -139,18 +145,14 @@ def violated(transmission: Transmission, releases: HostReleases) -> str:
     if reason := why_unknown(transmission, releases.topics.solved.context.system):
         return reason
     topic, stated = plain_topic(transmission.topic), releases.topics.solved.event_models.get(transmission.name)
-    real, agent = _published(transmission, releases), _agent_jitter(transmission)
-    is_alone = len(relayed(transmission, releases.topics.solved.context.system)) == 1
-    if is_alone and _is_own(transmission, releases) and not isinstance(real, PeriodicEvents):
-        # What an executor without a loop sends is no interval and jitter; what is stated of it counts.
-        return ""
-    if not isinstance(real, PeriodicEvents) or not isinstance(stated, PeriodicEvents):
+    published, agent = _published(transmission, releases), _agent_jitter(transmission)
+    if isinstance(published, AggregatedEventModel):
         return f"more than one publisher sends {topic!r}, so that the interval of {transmission.callback!r} is not that of the messages"
-    if (
-        _interval(real, transmission, releases) != stated.period
-        or real.jitter + agent > stated.jitter
-        or stated.min_interarrival
-    ):
+    real = periodic_bound(published)
+    if real is None or not isinstance(stated, PeriodicEvents):
+        return f"no interval and jitter describe how often {_sender(transmission, releases)} sends {topic!r}"
+    interval = _interval(real, transmission, releases)
+    if interval != stated.period or real.jitter + agent > stated.jitter or stated.min_interarrival:
         times = f"every {time_text(real.period)} with a jitter of up to {time_text(real.jitter)}"
         return f"{_sender(transmission, releases)} sends {topic!r} {times}, for which the controller is not analysed"
     return ""
@@ -187,14 +189,14 @@ def _with_real_times(system: System, transmission: Transmission, releases: HostR
     try:
         if not violated(transmission, releases):
             return system
-        real, agent = _published(transmission, releases), _agent_jitter(transmission)
+        real, agent = periodic_bound(_published(transmission, releases)), _agent_jitter(transmission)
     except UnknownError:
         return system
     stimuli = [each for each in system.stimuli.stimuli if each.name in system.processes[transmission.name].stimuli]
     handles = [handle for each in system.executors for handle in each.handles if handle.transmission == transmission.name]
     arriving = stimuli[0] if len(stimuli) == 1 else None
     # The task of a callback outside executors has a period that was chosen for what is stated.
-    if not handles or not isinstance(arriving, Periodic | RelativePeriodic) or not isinstance(real, PeriodicEvents):
+    if not handles or not isinstance(arriving, Periodic | RelativePeriodic) or real is None:
         return system
     jitter = max(real.jitter, *(handle.jitter for handle in handles))
     interval = _interval(real, transmission, releases)

@@ -408,6 +408,11 @@ class OutputEventModel(DerivedEvents):
         ends = enumerate(self.completions, start=1)
         return min(self.events.delta_min(job + count - 1) - end for job, end in ends)
 
+    @property
+    def variation(self) -> Time:
+        """The longest minus the shortest time from an activation to its completion."""
+        return self._wcrt - self.bcet
+
     @cached_property
     def _wcrt(self) -> Time:
         return max(end - self.events.delta_min(job) for job, end in enumerate(self.completions, start=1))
@@ -416,3 +421,21 @@ class OutputEventModel(DerivedEvents):
     def _distances(self) -> dict[int, Time]:
         """Cached results; busy windows need the same ones many times."""
         return {}
+
+
+def periodic_bound(events: EventModel) -> PeriodicEvents | None:
+    """Periodic events with a jitter that are at least as dense; None if it is not known what they are delayed from.
+
+    What varies between an event and one that follows from it adds to the jitter (K. Richter, "Compositional scheduling analysis using
+    standard event models", 2005).
+    """
+    match events:
+        case PeriodicEvents(period, jitter, _):
+            return PeriodicEvents(period, jitter)
+        case Delayed(source, variation):
+            bound = periodic_bound(source)
+        case OutputEventModel(source, variation=variation):
+            bound = periodic_bound(source)
+        case _:
+            return None
+    return None if bound is None else PeriodicEvents(bound.period, bound.jitter + variation)
