@@ -154,7 +154,7 @@ class InterProcessStimulus(Stimulus):
 class PeriodicBurstStimulus(Stimulus, FixedPeriodic):
     """Several activations in a burst that is repeated with the period."""
     burst_length: Time | None = containment("burstLength")
-    """Length of a burst; occurrences that would lie behind it are cut off."""
+    """Length of a burst; later occurrences are left out."""
     occurrence_min_distance: Time | None = containment("occurrenceMinDistance")
     """Distance of the occurrences in a burst, the first of which is at its start."""
     occurrence_count: int | None = attribute("occurrenceCount")

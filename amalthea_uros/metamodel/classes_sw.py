@@ -384,7 +384,7 @@ class SenderReceiverRead(SenderReceiverCommunication):
 class SenderReceiverWrite(SenderReceiverCommunication):
     """Writing by sender-receiver communication."""
     notified_runnables: list[Runnable] = references("notifiedRunnables")
-    """Runnables that are told of the write."""
+    """Runnables that are notified of the write."""
 
 class ServerCall(ActivityGraphItem, abstract=True):
     """Call of a runnable by client-server communication."""
