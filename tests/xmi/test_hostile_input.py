@@ -18,6 +18,7 @@ from amalthea_uros._internal import files
 from amalthea_uros.cli.main import main
 from amalthea_uros.metamodel import classes
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.xmi.emf.versions import version_of
 
 #: A file as APP4MC writes it.
 GOOD = (DATA / "brake.amxmi").read_bytes()
@@ -432,6 +433,27 @@ def test_a_zip_with_changed_bytes_is_read_or_refused(tmp_path):
         packed = zipped(("ResourceContents", VALID), method=method)
         for _ in every(10, range(300)):
             is_read(tmp_path / "changed.amxmi", mutated(rng, packed))
+
+
+def test_a_token_without_an_end_is_parsed_again_a_few_times():
+    """Each time, expat begins with it anew, so that pieces of one size took the square of its length."""
+    calls = []
+
+    def profile(_frame, event, function):
+        if event == "c_call" and function.__name__ == "Parse":
+            calls.append(function)
+
+    sys.setprofile(profile)
+    try:
+        assert version_of("a" * 10**7) == ""
+    finally:
+        sys.setprofile(None)
+    assert 0 < len(calls) < 15
+
+
+@pytest.mark.parametrize("size", [9_990, 10_000, 20_001, 90_000])
+def test_the_version_is_known_behind_a_comment_of_any_length(size):
+    assert version_of(f"<!--{' ' * size}-->{root(declaration='')}") == "3.3.0"
 
 
 @examples(40)

@@ -66,7 +66,7 @@ def migrated_name(name: str, target: str) -> str:
     return name + ".amxmi" if is_sub_model and position(target) >= position("ITEA 1.3.0") else name
 
 
-#: Characters that are parsed at once in search of the root.
+#: Characters that are parsed first in search of the root.
 _PIECE = 10_000
 
 
@@ -84,11 +84,12 @@ def version_of(text: str) -> str:
     parser.StartElementHandler = at_root
     parser.StartDoctypeDeclHandler = lambda *_declaration: found.append("")
     try:
-        # The root is mostly near the start, but comments in front of it may have any length.
-        for start in range(0, len(text), _PIECE):
-            parser.Parse(text[start : start + _PIECE], False)
-            if found:
-                break
+        # The root is mostly near the start, but comments in front of it may have any length. Pieces double, because expat begins again
+        # with a token that is not complete.
+        end = 0
+        while end < len(text) and not found:
+            start, end = end, 2 * end or _PIECE
+            parser.Parse(text[start:end], False)
     except expat.ExpatError:
         pass
     return found[0] if found else ""
