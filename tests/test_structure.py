@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1157,
     "_version": 1,
     "am": 2,
-    "analyze": 9237,
+    "analyze": 9246,
     "bridge": 2876,
     "cli": 2613,
     "compare": 3831,

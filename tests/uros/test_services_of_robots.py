@@ -82,6 +82,21 @@ def test_a_chain_takes_the_service():
     assert quantity.min == quantity.max == frames + calls + 4 * 2 * MILLISECOND + 2 * 2 * MILLISECOND + 4 * 500 * MICROSECOND
 
 
+def test_the_chain_over_the_service_has_a_bound():
+    (found,), (seen,) = amuros.analyze(CONTROLLERS).chains, amuros.simulate(CONTROLLERS, "5 s").chains
+    assert found.best <= seen.quantities[QUANTITY].min
+    assert seen.quantities[QUANTITY].max <= found.worst < 40 * MILLISECOND
+
+
+def test_what_depends_on_an_unknown_request_is_unknown_on_both_sides():
+    """With a sleep, how late acknowledgements are has no bound: nor when requests arrive, nor therefore when their responses do."""
+    analysis = amuros.analyze(CONTROLLERS.replace("{spin: 1 s}", "{spin_some: 10 ms, sleep: 1 ms}"))
+    for name in ("b_add_request_to_add", "a_add_response_to_Got"):
+        assert name not in analysis.solution.event_models
+        assert f"unknown times of {name}" in str([each.message for each in analysis.findings])
+    assert analysis.chains["whole"].worst is None
+
+
 @pytest.mark.parametrize("service", ["add", "/add"])
 def test_an_answer_without_the_service_is_unknown(service):
     """The agents send requests on as requests only: the chain has to name what makes the response of a request."""

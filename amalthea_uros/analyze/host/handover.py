@@ -9,7 +9,9 @@ depends on them.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from amalthea_uros.analyze.host.releases import HostReleases
 from amalthea_uros.analyze.host.topics import HostTopics, delayed
@@ -59,32 +61,47 @@ def with_messages_of_others(described: System, solution: Solution) -> Solution:
 
 def _checked(described: System, stated: System, solution: Solution, releases: HostReleases) -> Solution:
     """The solution with a finding about each message that is not as stated; unknown is what depends on those without known times."""
-    changed, errors, unknown = _changes(stated, solution), [], {}
-    for transmission in handed_over(releases):
-        topic = plain_topic(transmission.topic)
-        try:
-            if difference := violated(transmission, releases):
-                errors.append((difference, next(iter(releases.topics.publishers(topic)), transmission)))
-                unknown[transmission] = difference
-        except UnknownError as error:
-            unknown[transmission] = f"it is not known how often {_sender(transmission, releases)} sends {topic!r}: {error}"
-        for handle, after in changed:
-            if handle.transmission == transmission.name and handle.interval != after.interval:
-                sender = _sender(transmission, releases)
-                unknown.setdefault(
-                    transmission, f"{sender} does not send {topic!r} in the interval that {handle.name!r} states"
-                )
-    system = solution.context.system
-    for transmission, reason in unknown.items():
-        system = with_unknown_times(system, transmission, reason, described)
-    if system is not solution.context.system:
+    changed = _changes(stated, solution)
+    unknown: dict[Transmission, _Unknown] = {}
+    # What a controller sends can be unknown because of what it receives, and make unknown what others receive.
+    while more := {each: why for each, why in _without_known_times(releases, changed) if each not in unknown}:
+        unknown |= more
+        system = solution.context.system
+        for transmission, why in more.items():
+            system = with_unknown_times(system, transmission, why.reason, described)
         solution = solve(timing_context(system, solution.context.settings))
+        releases = HostReleases(HostTopics(stated.host, solution)).solve()
     senders = {each.name: _sender(each, releases) for each in handed_over(releases)}
     for handle, after in changed:
         solution.context.notes.warning("HST003", _change(handle, after, senders[handle.transmission or ""]), handle)
-    for difference, publisher in errors:
-        solution.context.notes.error("HST004", difference, publisher)
+    for transmission, why in unknown.items():
+        if why.is_contradiction:
+            publisher = next(iter(releases.topics.publishers(plain_topic(transmission.topic))), transmission)
+            solution.context.notes.error("HST004", why.reason, publisher)
     return solution
+
+
+class _Unknown(NamedTuple):
+    """Why it is unknown how often a message comes, and whether that contradicts what is described."""
+
+    reason: str
+    is_contradiction: bool = False
+
+
+def _without_known_times(
+    releases: HostReleases, changed: Sequence[tuple[Handle, Handle]]
+) -> Iterator[tuple[Transmission, _Unknown]]:
+    """The messages of which it is not known how often they come."""
+    intervals = {handle.transmission: handle for handle, after in changed if handle.interval != after.interval}
+    for transmission in handed_over(releases):
+        topic, sender = plain_topic(transmission.topic), _sender(transmission, releases)
+        try:
+            if difference := violated(transmission, releases):
+                yield transmission, _Unknown(difference, is_contradiction=True)
+            elif handle := intervals.get(transmission.name):
+                yield transmission, _Unknown(f"{sender} does not send {topic!r} in the interval that {handle.name!r} states")
+        except UnknownError as error:
+            yield transmission, _Unknown(f"it is not known how often {sender} sends {topic!r}: {error}")
 
 
 def _changes(stated: System, solution: Solution) -> list[tuple[Handle, Handle]]:
