@@ -30,13 +30,13 @@ LINES = {
     "difference": 790,
     "editor": 653,
     "errors": 13,
-    "executors": 2572,
+    "executors": 2570,
     "findings": 535,
     "inchron": 535,
     "inchron_bridge": 3349,
     "judge": 595,
     "measure": 1124,
-    "metamodel": 3292,
+    "metamodel": 3295,
     "names": 17,
     "perf": 1826,
     "platforms": 0,
@@ -50,7 +50,7 @@ LINES = {
     "units": 206,
     "uros": 7793,
     "validate": 3267,
-    "xmi": 8585,
+    "xmi": 8598,
 }
 
 #: Files may import from this many modules at most; those of the table do so still, and none more.

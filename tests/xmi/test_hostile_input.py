@@ -250,7 +250,7 @@ def test_a_larger_size_allows_more_elements(tmp_path, monkeypatch):
 
 
 def test_references_in_lists_are_counted(tmp_path, monkeypatch):
-    monkeypatch.setattr("amalthea_uros.xmi.emf.reader.MODEL_REFERENCES", 5)
+    monkeypatch.setattr("amalthea_uros.xmi.emf.references.MODEL_REFERENCES", 5)
     many = "<swModel>" + '<tasks name="T" stimuli="a b c"/>' * 2 + "</swModel>"
     with pytest.raises(ReadError, match="more than 5 references in lists"):
         load(file(tmp_path, root(many).encode()))

@@ -26,11 +26,22 @@ _DECLARED = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._
 
 @dataclass(frozen=True, slots=True)
 class FileText:
-    """The characters of a file and how they were stored."""
+    """The characters of a file and how they were stored.
+
+    Attributes
+    ----------
+    stored : its bytes, if these are the text in UTF-8
+    """
 
     text: str
     encoding: str = "utf-8"
     zip_entry: str | None = None
+    stored: bytes | None = None
+
+    @property
+    def utf8(self) -> bytes:
+        """The text in UTF-8. To encode it takes long and, since Python keeps the result, as much memory as the text."""
+        return self.text.encode() if self.stored is None else self.stored
 
 
 def is_model_name(path: Path) -> bool:
@@ -119,7 +130,7 @@ def _read_text(path: Path, max_size: int) -> FileText:
     if not text or text.isspace():
         raise FileError(path, "the file is empty", "Check that it was written completely.")
     _check_elements(path, text, MODEL_ELEMENTS * max(MODEL_SIZE, max_size) // MODEL_SIZE)
-    return FileText(text, encoding, entry)
+    return FileText(text, encoding, entry, data if encoding == "utf-8" else None)
 
 
 def _check_elements(path: Path, text: str, limit: int) -> None:

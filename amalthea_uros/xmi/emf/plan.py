@@ -110,9 +110,9 @@ def _has_to_be_stated(class_name: str, fact: FeatureFact) -> bool:
     return fact.required or fact.name in _NUMBERS.get(class_name, ())
 
 
-def reference_texts(feature: FeaturePlan, value: str) -> list[str]:
-    """The ids in an attribute. A single reference is one id, even if it contains unencoded blanks."""
-    return value.split() if feature.many or not value.strip() else [value.strip()]
+def reference_texts(feature: FeaturePlan, value: str, most: int = -1) -> list[str]:
+    """The ids in an attribute, about as many as are needed at most. A single reference is one id, even with unencoded blanks in it."""
+    return value.split(None, most) if feature.many or not value.strip() else [value.strip()]
 
 
 class ClassPlan:

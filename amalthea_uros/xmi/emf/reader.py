@@ -6,13 +6,13 @@ also of attributes, and beyond line 65,535, where libxml2 stops counting.
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 from xml.parsers import expat
 
-from amalthea_uros._internal.limits import ADVICE, MODEL_REFERENCES
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.classes import Amalthea
@@ -25,7 +25,7 @@ from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import connect, disconnect
 from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModel, read_header
-from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, WAVES, ClassPlan, FeaturePlan, plans, reference_texts
+from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, WAVES, ClassPlan, FeaturePlan, plans
 from amalthea_uros.xmi.emf.problems import CollectedFinding, FindingCollector
 
 _KEPT = "Unknown content is ignored, but preserved when the file is saved."
@@ -39,9 +39,9 @@ StartHandler = Callable[[str, dict[str, str]], None]
 EndHandler = Callable[[str], None]
 
 
-#: A reference to be resolved when all documents are read: the object that refers, the feature, the ids in their order, and whether
-#: they are written as `href` elements rather than as an attribute. A plain tuple, because one is made for every reference.
-PendingReference = tuple[Element, FeaturePlan, list[str], bool]
+#: References to be resolved when all documents are read: the object that refers, and the feature. Until then the instance dictionary
+#: of the object has the text of an attribute, or the list of the ids of `href` elements. A plain tuple, because many are made.
+PendingReference = tuple[Element, FeaturePlan]
 
 #: An open element: its object (None for an `href` element), what was read of it so far (its instance dictionary, with the texts of
 #: its references until they are resolved), its possible child elements, and its index in document order (else -1). A plain tuple,
@@ -77,9 +77,8 @@ def read(path: Path, content: FileText) -> ReadResult:
     ------
     ReadError : not XML, not an AMALTHEA model, a version too old, or refused for safety.
     """
-    return _finish(
-        _ModelReader(path, content, expat.ParserCreate(intern=None))
-    )  # to intern each name takes longer than to compare it
+    # To intern each name takes longer than to compare it.
+    return _finish(_ModelReader(path, content, expat.ParserCreate("utf-8", intern=None)))
 
 
 class ParserEvents(Protocol):
@@ -120,12 +119,11 @@ class _ModelReader:
         self.parser = parser
         self.header: ModelHeader | None = None
         self.elements: list[Element] = []
-        self.starts: list[int] = []
-        self.ends: list[int] = []
+        self.starts = array("q")
+        self.ends = array("q")
         #: The open elements; an `href` element has no object of its own.
         self.stack: list[Frame] = []
         self.references: Sequence[list[PendingReference]] = [[] for _ in range(WAVES)]
-        self.listed_references = 0
         self.referables: Sequence[list[Element]] = [[] for _ in range(WAVES)]
         self.xmi_ids: list[tuple[Element, str]] = []
         #: Comments and the like, until the part that follows them is read.
@@ -156,8 +154,8 @@ class _ModelReader:
             doctype=self.refuse_doctype,
         )
         try:
-            # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
-            parser.Parse(text, True)
+            # In UTF-8, whatever the encoding of the file and its declaration: so the offsets count.
+            parser.Parse(self.encoded, True)
         except expat.ExpatError as error:
             raise self.malformed(error) from None
         return self.result()
@@ -182,7 +180,7 @@ class _ModelReader:
     @cached_property
     def encoded(self) -> bytes:
         """The text as expat counts it."""
-        return self.content.text.encode()
+        return self.content.utf8
 
     # Elements
 
@@ -215,7 +213,7 @@ class _ModelReader:
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
         elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
         add_id, referables, references = self.xmi_ids.append, self.referables, self.references
-        pending_extras, max_depth, max_references = self.pending_extras, problems.MAX_DEPTH, MODEL_REFERENCES
+        pending_extras, max_depth = self.pending_extras, problems.MAX_DEPTH
 
         def start(name: str, attributes: dict[str, str]) -> None:
             parent, held, children, _ = stack[-1]
@@ -266,11 +264,8 @@ class _ModelReader:
                     else:
                         self.unknown_attribute(element, plan, key, value)
                 elif attribute.is_reference:
-                    texts = value.split(None, max_references)
-                    if len(texts) > 1:
-                        texts = self.several(attribute, value, texts)
-                    if texts:
-                        references[attribute.wave].append((element, attribute, texts, False))
+                    if value and not value.isspace():
+                        references[attribute.wave].append((element, attribute))
                         values[attribute.name] = value
                 elif attribute.parsed is None:
                     values[attribute.name] = value
@@ -285,15 +280,6 @@ class _ModelReader:
                 raise self.too_deep()
 
         return start
-
-    def several(self, feature: FeaturePlan, value: str, texts: list[str]) -> list[str]:
-        """The ids in an attribute with blanks; of a whole file not so many that they exhaust the memory."""
-        if not feature.many:
-            return reference_texts(feature, value)
-        self.listed_references += len(texts)
-        if self.listed_references > MODEL_REFERENCES:
-            raise self.refuse("XMI004", f"the file has more than {MODEL_REFERENCES:,} references in lists", ADVICE)
-        return texts
 
     def end_handler(self) -> EndHandler:
         """The handler of end tags."""
@@ -321,7 +307,7 @@ class _ModelReader:
         texts = held.get(feature.name)
         if texts is None:
             texts = held[feature.name] = []
-            self.references[feature.wave].append((holder, feature, texts, True))
+            self.references[feature.wave].append((holder, feature))
         elif isinstance(texts, str) or not feature.many:
             self.start_duplicate(feature)
             return
@@ -387,10 +373,11 @@ class _ModelReader:
         self.parser.EndElementHandler = self.end_part
         start, end = self.skipped_start, self.offset
         # The position of expat is at the end tag of an element with content, but after the tag of an empty one.
-        is_empty = self.encoded[end - 2 : end] == b"/>" and self.encoded.find(b"<", start + 1, end) < 0
+        encoded = self.encoded
+        is_empty = encoded[end - 2 : end] == b"/>" and encoded.find(b"<", start + 1, end) < 0
         if not is_empty:
-            end = self.encoded.index(b">", end) + 1
-        self.keep_extra(self.encoded[start:end].decode())
+            end = encoded.index(b">", end) + 1
+        self.keep_extra(encoded[start:end].decode())
 
     def characters(self, data: str) -> None:
         text = data.strip(WHITE_SPACE)

@@ -6,6 +6,7 @@ text, so that nothing is lost and everything else can continue.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote
 
+from amalthea_uros._internal.limits import ADVICE, MODEL_REFERENCES
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Severity
@@ -20,8 +22,8 @@ from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
-from amalthea_uros.xmi.emf.plan import WAVES, FeaturePlan, plans
-from amalthea_uros.xmi.emf.problems import location
+from amalthea_uros.xmi.emf.plan import WAVES, FeaturePlan, plans, reference_texts
+from amalthea_uros.xmi.emf.problems import location, refusal
 from amalthea_uros.xmi.emf.reader import PendingReference, ReadResult
 
 #: Of objects with the same name, so many are listed.
@@ -36,6 +38,10 @@ def resolve(results: Sequence[ReadResult], linked: Mapping[str, Element]) -> lis
     Parameters
     ----------
     linked : objects by texts whose meaning is known already, because the references of migrated models are links before they are texts
+
+    Raises
+    ------
+    ReadError : a file has so many references in lists that they could exhaust the memory.
     """
     resolver = _Resolver(results, linked)
     for wave in range(WAVES):
@@ -57,9 +63,10 @@ class Use(NamedTuple):
 
 
 class _Match(NamedTuple):
-    """What a text means, and the id of the problem with it, "" if there is none."""
+    """What a text means: the object and its unique name; and the id of the problem with it, "" if there is none."""
 
     target: Element | None
+    canonical: str
     problem: str
 
 
@@ -71,18 +78,18 @@ class _Resolver:
         self.shared: dict[str, list[Element]] = {}
         self.suffixes: dict[type[Element], str] = {}
         self.in_namespace = {holder for result in results for holder, *_ in result.references[0]}
-        #: The unique name of every object that can be referred to.
-        self.names: dict[Element, str] = {}
         self.proxies: dict[tuple[str, type[Element]], Element] = {}
         self.problems: dict[tuple[str, str], list[Use]] = {}
         #: What the texts that are no unique names mean, each looked up once, because thousands of objects may have the same name.
         self.matches: dict[tuple[Document, str, type[Element]], _Match] = {}
+        #: The number of references in lists of each file.
+        self.listed: Counter[Document] = Counter()
         self.suggestions = Suggestions()
 
     def index(self, elements: Iterable[Element]) -> None:
         """Enter objects under their unique names."""
         self.matches.clear()
-        by_id, names, in_namespace, suffixes = self.by_id, self.names, self.in_namespace, self.suffixes
+        by_id, in_namespace, suffixes = self.by_id, self.in_namespace, self.suffixes
         for element in elements:
             cls = type(element)
             suffix = suffixes.get(cls)
@@ -91,33 +98,60 @@ class _Resolver:
             # The usual case; the general function takes three times as long.
             is_usual = suffix and element not in in_namespace
             name = encode(element.__dict__.get("name")) + suffix if is_usual else unique_name(element)
-            names[element] = name
             first = by_id.setdefault(name, element)
             if first is not element:
                 self.shared.setdefault(name, [first]).append(element)
 
     def link_all(self, result: ReadResult, references: list[PendingReference]) -> None:
-        """Assign the targets of references; note where the form (attribute or `href`) is not the one that EMF would write."""
+        """Assign the targets of references."""
         by_id, shared, document, is_single = self.by_id, self.shared, result.document, len(self.results) == 1
-        for holder, feature, texts, is_href in references:
-            targets = []
-            local = True
-            for text in texts:
-                target = by_id.get(text)
-                if target is None or text in shared or not isinstance(target, feature.target):
-                    target = self.find(Use(document, holder, feature, is_href), text)
-                    local = local and target.unresolved is None
-                targets.append(target)
-                local = local and (is_single or target.document is document)
-            if targets:
-                holder.__dict__[feature.name] = ReferenceList(holder, targets) if feature.many else targets[0]
-            if is_href and result.href_content:
-                for number, target in enumerate(targets):
-                    content = result.href_content.get((holder, feature.name, number))
-                    if content:
-                        document.href_content.setdefault((holder, feature.xml_name, target), []).extend(content)
-            if is_href is local and targets:
-                document.href_features[holder, feature.xml_name] = is_href
+        for holder, feature in references:
+            held = holder.__dict__
+            text = held[feature.name]
+            # The usual case, one id in an attribute that names an object of the file.
+            target = None if feature.many or type(text) is list or text in shared else by_id.get(text)
+            if target is not None and isinstance(target, feature.target) and (is_single or target.document is document):
+                held[feature.name] = target
+            else:
+                self.link(result, holder, feature, text)
+
+    def link(self, result: ReadResult, holder: Element, feature: FeaturePlan, given: str | list[str]) -> None:
+        """Assign the targets of one object; note if the form (attribute or `href`) is not the one that EMF would write.
+
+        Parameters
+        ----------
+        given : the text of an attribute, or the ids of `href` elements
+        """
+        document, is_single, is_href = result.document, len(self.results) == 1, isinstance(given, list)
+        targets = []
+        local = True
+        for text in given if isinstance(given, list) else self.texts_of(document, holder, feature, given):
+            target = self.by_id.get(text)
+            if target is None or text in self.shared or not isinstance(target, feature.target):
+                target = self.find(Use(document, holder, feature, is_href), text)
+                local = local and target.unresolved is None
+            targets.append(target)
+            local = local and (is_single or target.document is document)
+            content = result.href_content.get((holder, feature.name, len(targets) - 1)) if is_href else None
+            if content:
+                document.href_content.setdefault((holder, feature.xml_name, target), []).extend(content)
+        holder.__dict__[feature.name] = ReferenceList(holder, targets) if feature.many else targets[0]
+        if is_href is local:
+            document.href_features[holder, feature.xml_name] = is_href
+
+    def texts_of(self, document: Document, holder: Element, feature: FeaturePlan, value: str) -> list[str]:
+        """The ids in an attribute; of a whole file not so many that they exhaust the memory."""
+        texts = reference_texts(feature, value, MODEL_REFERENCES)
+        if len(texts) > 1:
+            self.listed[document] += len(texts)
+            if self.listed[document] > MODEL_REFERENCES:
+                source, path = document.source, document.path
+                assert source
+                assert path
+                offset = source.byte_starts[source.index[holder]]
+                message = f"the file has more than {MODEL_REFERENCES:,} references in lists"
+                raise refusal(path, source.text, offset, "XMI004", message, ADVICE)
+        return texts
 
     def find(self, use: Use, text: str) -> Element:
         """The target of a reference that is not exactly the unique name of one fitting object."""
@@ -131,10 +165,9 @@ class _Resolver:
         target = match.target
         if target is None:
             return self.proxy(text, feature)
-        canonical = self.names[target]
-        if canonical != text:
+        if match.canonical != text:
             self.problem("XMI024", text, use)
-            document.spellings[holder, f"{feature.xml_name} {text}"] = Spelling(text, canonical)
+            document.spellings[holder, f"{feature.xml_name} {text}"] = Spelling(text, match.canonical)
         return target
 
     def match(self, document: Document, text: str, target: type[Element]) -> _Match:
@@ -142,9 +175,9 @@ class _Resolver:
         candidates = self.candidates(document, text)
         fitting = [element for element in candidates if isinstance(element, target)]
         if not fitting:
-            return _Match(None, "XMI023" if candidates else "XMI020")
+            return _Match(None, "", "XMI023" if candidates else "XMI020")
         found = next((element for element in fitting if element.document is document), fitting[0])
-        return _Match(found, "XMI021" if len(fitting) > 1 else "")
+        return _Match(found, unique_name(found), "XMI021" if len(fitting) > 1 else "")
 
     def problem(self, rule: str, text: str, use: Use) -> None:
         self.problems.setdefault((rule, text), []).append(use)
@@ -167,7 +200,7 @@ class _Resolver:
     def by_xmi_id(self) -> dict[Document, dict[str, Element]]:
         """Objects by the `xmi:id` in their file, the first of several; for files whose ids are not unique names."""
         return {
-            result.document: {xmi_id: element for element, xmi_id in reversed(result.xmi_ids) if element in self.names}
+            result.document: {xmi_id: element for element, xmi_id in reversed(result.xmi_ids) if element.is_referable}
             for result in self.results
         }
 
@@ -189,7 +222,9 @@ class _Resolver:
     def check_xmi_ids(self, result: ReadResult) -> None:
         """Keep and report every `xmi:id` that is not the unique name, as after renaming an object with a text editor."""
         for element, xmi_id in result.xmi_ids:
-            canonical = self.names.get(element, "")
+            if self.by_id.get(xmi_id) is element:
+                continue
+            canonical = unique_name(element) if element.is_referable else ""
             if canonical == xmi_id:
                 continue
             result.document.spellings[element, "xmi:id"] = Spelling(xmi_id, canonical)
@@ -257,7 +292,7 @@ class _Resolver:
         target = self.candidates(self.results[0].document, text)[0]
         return (
             Severity.INFO,
-            f"{where} instead of {self.names[target]!r}",
+            f"{where} instead of {unique_name(target)!r}",
             "Write the unique name of the object. The reference is resolved nevertheless.",
         )
 

@@ -153,7 +153,7 @@ class TreeEvents:
     def SetParamEntityParsing(self, _flag: int) -> None:  # noqa: N802 (names of expat)
         """Nothing to do: the text was parsed before."""
 
-    def Parse(self, _text: str, _is_final: bool) -> None:  # noqa: N802
+    def Parse(self, _text: bytes, _is_final: bool) -> None:  # noqa: N802
         """Report everything."""
         root = self.tree.root
         self.outside(self.tree.prolog)
