@@ -184,4 +184,4 @@ def main() -> None:
         Terminal(sys.stderr).line(f"Error: {message_line(str(error))}")
         sys.exit(2)
     except OSError as error:
-        sys.exit(failed(error))
+        raise SystemExit(failed(error)) from error

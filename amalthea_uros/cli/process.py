@@ -45,7 +45,7 @@ def run() -> None:
 def _code() -> int:
     """Run the command line to the end of its output; the exit code."""
     _prepare()
-    code = 0
+    code, is_lost = 0, False
     try:
         from amalthea_uros.cli.main import main
 
@@ -54,13 +54,15 @@ def _code() -> int:
         if not isinstance(end.code, int):
             raise
         code = end.code
+        # Python 3.14 keeps what could not be written, and would fail with it again.
+        is_lost = isinstance(end.__cause__, OSError) and end.__cause__.filename is None
     except MemoryError:
         say("not enough memory; the input is too large for this computer, or for its limits")
         code = 2
     except Exception as error:
         code = broken(error)
     try:
-        for stream in filter(None, (sys.stdout, sys.stderr)):
+        for stream in filter(None, () if is_lost else (sys.stdout, sys.stderr)):
             stream.flush()
     except OSError as error:
         code = failed(error)

@@ -73,7 +73,11 @@ REFUSED = {
     "a zip with several entries": (zipped(("a", VALID), ("b", VALID)), "XMI001", "contains 2 files, expected one"),
     "a zip with no entry": (zipped(), "XMI002", ""),
     "a zip in a zip": (zipped(("a", ARCHIVE)), "XMI002", ""),
-    "a zip with an entry without a name": (ARCHIVE.replace(b"ResourceContents", b"\0" * 16), "XMI001", ""),
+    "a zip with an entry without a name": (
+        ARCHIVE.replace(b"ResourceContents", b"\0" * 16),
+        "XMI001",
+        "contains a file without a name",
+    ),
     # It packs a gigabyte in less than a kilobyte, and is unpacked as a whole.
     "a zip by bzip2": (
         zipped(("ResourceContents", VALID), method=zipfile.ZIP_BZIP2),

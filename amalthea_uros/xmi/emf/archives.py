@@ -16,8 +16,8 @@ _UNPACK = "Unpack it and load the directory."
 #: How EMF compresses. Others unpack without a limit to what comes out at a time: a few bytes of bzip2 become a megabyte.
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 
-#: What `zipfile` raises; an index error where an entry has no name.
-_DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError, IndexError)
+#: What `zipfile` raises.
+_DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError)
 
 
 def unpacked(path: Path, data: bytes, max_size: int) -> tuple[str, bytes]:
@@ -31,6 +31,8 @@ def unpacked(path: Path, data: bytes, max_size: int) -> tuple[str, bytes]:
         raise FileError(path, f"the archive contains more than {_MOST_ENTRIES:,} files, expected one", _UNPACK)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            if not all(info.filename for info in archive.infolist()):
+                raise FileError(path, "the archive contains a file without a name", "Pack the model again.")
             entries = [info for info in archive.infolist() if not info.is_dir()]
             if len(entries) != 1:
                 raise FileError(path, f"the archive contains {len(entries)} files, expected one", _UNPACK)

@@ -90,15 +90,19 @@ def format_double(value: float) -> str:
 
 def format_float(value: float) -> str:
     """`java.lang.Float.toString`: the fewest digits that give the same 32-bit number."""
-    if not math.isfinite(value):
-        return _format_java(value, "")
-    try:
-        single = struct.pack("f", value)
-    except OverflowError:
-        return _format_java(math.copysign(math.inf, value), "")
-    rounded = struct.unpack("f", single)[0]
-    digits = next(d for d in (f"{rounded:.{n}e}" for n in range(9)) if struct.pack("f", float(d)) == single)
+    rounded = _single(value)
+    if not math.isfinite(rounded):
+        return _format_java(rounded, "")
+    digits = next(d for d in (f"{rounded:.{n}e}" for n in range(9)) if _single(float(d)) == rounded)
     return _format_java(rounded, digits)
+
+
+def _single(value: float) -> float:
+    """The nearest 32-bit number, infinite if it is too large for one."""
+    try:
+        return float(struct.unpack("f", struct.pack("f", value))[0])
+    except OverflowError:
+        return math.copysign(math.inf, value)
 
 
 def _format_java(value: float, decimal: str) -> str:

@@ -89,7 +89,8 @@ def version_of(text: str) -> str:
         end = 0
         while end < len(text) and not found:
             start, end = end, 2 * end or _PIECE
-            parser.Parse(text[start:end], False)
+            # At the end it parses what it has put off, as newer ones do with incomplete tokens.
+            parser.Parse(text[start:end], end >= len(text))
     except expat.ExpatError:
         pass
     return found[0] if found else ""
