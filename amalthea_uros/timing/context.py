@@ -59,6 +59,7 @@ class TimingContext:
     waiting : processes whose waits for events depend on response times; `demands` has those of which the solution knows a bound
     unclear_locks : why the critical sections of a process are unknown
     unknown_demands : why the execution demand of a process does not follow from its activities
+    alike : of a system whose processes differ only in the offsets of counters; what does not depend on these is taken from it
     open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
     """
 
@@ -73,20 +74,27 @@ class TimingContext:
     unclear_locks: dict[str, str] = field(default_factory=dict)
     waiting: dict[str, WaitingProcess] = field(default_factory=dict)
     unknown_demands: Mapping[str, str] = field(default_factory=dict)
+    alike: TimingContext | None = None
     open_semaphores: frozenset[str] = frozenset()
 
     @classmethod
     def of(
-        cls, system: System, settings: Settings | None = None, *, unknown_demands: Mapping[str, str] | None = None
+        cls,
+        system: System,
+        settings: Settings | None = None,
+        *,
+        unknown_demands: Mapping[str, str] | None = None,
+        alike: TimingContext | None = None,
     ) -> TimingContext:
         """The timing context of a system.
 
         Parameters
         ----------
         unknown_demands : why the jobs of processes do not only execute what their activities say
+        alike : the context of a system whose processes differ only in the offsets of counters, with the same settings
         """
         context = cls.of_scheduling(with_bounded_arrivals(system), settings)
-        context.unknown_demands = unknown_demands or {}
+        context.unknown_demands, context.alike = unknown_demands or {}, alike
         for sentence in arrival_assumptions(system):
             context.notes.assume(sentence)
         context._find_demands()
@@ -113,6 +121,8 @@ class TimingContext:
     @cached_property
     def demand_model(self) -> DemandModel:
         """Converts activities to execution demand."""
+        if self.alike is not None:
+            return self.alike.demand_model.with_counters(self.system, self.notes)
         return DemandModel(self.system, self.notes, self.settings)
 
     @cached_property
@@ -123,6 +133,8 @@ class TimingContext:
     @cached_property
     def dataflow(self) -> Dataflow:
         """The positions of activities, and the links between processes."""
+        if self.alike is not None:
+            return self.alike.dataflow.with_counters(self.system)
         return Dataflow(self.system, self.settings.communication)
 
     @cached_property
@@ -292,7 +304,9 @@ class TimingContext:
                 if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownError(reason)
                 waits = awaited_events(scheduled.process, self.activations)
-                demand = (self.executing if waits else model).of_process(scheduled.process, scheduled.core)
+                demand = self._same_demand(scheduled) or (self.executing if waits else model).of_process(
+                    scheduled.process, scheduled.core
+                )
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownError("it has no execution time, and neither have the runnables that it calls")
                 if name in self.decisions:
@@ -307,6 +321,13 @@ class TimingContext:
             except UnknownError as error:
                 self.notes.warning("ANA004", f"the execution demand of {name!r} is unknown: {error}", scheduled.process)
                 self.mark_unknown(name, str(error))
+
+    def _same_demand(self, scheduled: ScheduledProcess) -> MultiframeDemand | None:
+        """The demand of a process that is the same in the other context; None if there is none, or if it consists of several ones."""
+        name, alike = scheduled.name, self.alike
+        if alike is None or name in alike.waiting or name in alike.decisions or alike.system.processes[name] is not scheduled.process:
+            return None
+        return alike.demands.get(name)
 
     @cached_property
     def executing(self) -> DemandModel:

@@ -32,6 +32,7 @@ from amalthea_uros.timing.activation.releases import (
     phase_count,
     with_phases,
 )
+from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time
 
@@ -64,7 +65,7 @@ class PhaseCases:
         if not unknown or count > MAX_COMBINATIONS:
             return None
         combinations = list(phase_combinations(unknown))
-        first = _solution(solution, combinations[0])
+        first = _solution(solution.context, combinations[0])
         if count * sum(response.jobs for response in first.responses.values()) > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
@@ -72,7 +73,10 @@ class PhaseCases:
     def solutions(self, cases: Cases) -> Iterator[tuple[int, Solution]]:
         """The numbers of the combinations of some cases, and their solutions."""
         for number in cases:
-            yield number, _solution(self.solution, self.combinations[number]) if number else self.first
+            yield number, self._solution(number) if number else self.first
+
+    def _solution(self, number: int) -> Solution:
+        return _solution(self.solution.context, self.combinations[number], self.first.context)
 
     def of_everything(self) -> Cases:
         """The cases of a whole system: combinations of one case can differ in no result."""
@@ -328,6 +332,7 @@ def least_rotation(row: Sequence[int]) -> int:
     return min(one, other)
 
 
-def _solution(solution: Solution, combination: Mapping[ExternalInput, int]) -> Solution:
-    context = solution.context
-    return solve(timing_context(with_phases(context.system, combination), context.settings))
+def _solution(
+    context: TimingContext, combination: Mapping[ExternalInput, int], alike: TimingContext | None = None
+) -> Solution:
+    return solve(timing_context(with_phases(context.system, combination), context.settings, alike))
