@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 from typing import TypeVar
 
-from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
@@ -93,8 +93,8 @@ class TimingContext:
         unknown_demands : why the jobs of processes do not only execute what their activities say
         alike : the context of a system whose processes differ only in the offsets of counters, with the same settings
         """
-        context = cls.of_scheduling(with_bounded_arrivals(system), settings)
-        context.unknown_demands, context.alike = unknown_demands or {}, alike
+        context = cls.of_scheduling(with_bounded_arrivals(system), settings, alike)
+        context.unknown_demands = unknown_demands or {}
         for sentence in arrival_assumptions(system):
             context.notes.assume(sentence)
         context._find_demands()
@@ -102,12 +102,14 @@ class TimingContext:
         return context
 
     @classmethod
-    def of_scheduling(cls, system: System, settings: Settings | None = None) -> TimingContext:
+    def of_scheduling(
+        cls, system: System, settings: Settings | None = None, alike: TimingContext | None = None
+    ) -> TimingContext:
         """The same without demands and critical sections, for what follows the activities one by one."""
         settings = settings or Settings()
         if settings.quantile is not None:
             system = with_quantiles(system, settings.quantile)
-        context = cls(with_direct_calls(system), settings)
+        context = cls(with_direct_calls(system), settings, alike=alike)
         if context.system is not system:
             context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
         if has_overhead_of_tasks(system):
@@ -150,6 +152,8 @@ class TimingContext:
     @cached_property
     def touching(self) -> Touching:
         """What processes can touch if something about them is unknown."""
+        if self.alike is not None:
+            return self.alike.touching
         return Touching(self.system, self.scheduled, self.dataflow)
 
     def time_base(self, process: str) -> int:
@@ -253,6 +257,12 @@ class TimingContext:
             found.setdefault((item.core, item.server), []).append(item)
         return {key: sorted(items, key=lambda item: item.rank, reverse=True) for key, items in found.items()}
 
+    @property
+    def is_everything_scheduled(self) -> bool:
+        """Whether each process is scheduled, and allocated once."""
+        mapping = self.system.mapping
+        return len(self.scheduled) == len(self.system.processes) == len(mapping.tasks) + len(mapping.isrs)
+
     def mark_unknown(self, name: str, reason: str) -> None:
         """Record why the response time of a process is unknown."""
         self.reasons.setdefault(name, reason)
@@ -274,6 +284,10 @@ class TimingContext:
 
     def _schedule(self) -> None:
         """Find core, rank and deadline of each process."""
+        if self.alike is not None and self.alike.is_everything_scheduled:
+            processes, self.servers = self.system.processes, self.alike.servers
+            self.scheduled = {name: replace(item, process=processes[name]) for name, item in self.alike.scheduled.items()}
+            return
         scheduling = SchedulingOrder(self.system, self.notes, response_time_limits(self.system), self.servers)
         for allocation in self.system.mapping.tasks:
             try:
