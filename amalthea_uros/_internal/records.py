@@ -27,10 +27,8 @@ else:
 
     def replace(one: Any, /, **changes: Any) -> Any:
         """As `dataclasses.replace`, which examines all fields for each object anew."""
-        for name in _parameters_of(type(one)):
-            if name not in changes:
-                changes[name] = getattr(one, name)
-        return type(one)(**changes)
+        names, values = _parameters_of(type(one))
+        return type(one)(**(dict(zip(names, values(one), strict=True)) | changes))
 
     def dataclass(cls: Any = None, /, **options: bool) -> Any:
         """As `dataclasses.dataclass`, with the options `frozen`, `slots`, `kw_only`, `eq`, `repr` and `order`."""
@@ -169,8 +167,10 @@ def _positional(owner: Any) -> tuple[str, ...]:
 
 
 @cache
-def _parameters_of(kind: Any) -> tuple[str, ...]:
-    return tuple([each.name for each in dataclasses.fields(kind) if each.init])
+def _parameters_of(kind: Any) -> tuple[Sequence[str], Callable[[Any], tuple[Any, ...]]]:
+    """The names of what a constructor takes, and a function that returns their values."""
+    names = [each.name for each in dataclasses.fields(kind) if each.init]
+    return names, _values(names)
 
 
 def _constructor(owner: Any, *, frozen: bool) -> Any:

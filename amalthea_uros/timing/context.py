@@ -123,9 +123,13 @@ class TimingContext:
     @cached_property
     def demand_model(self) -> DemandModel:
         """Converts activities to execution demand."""
-        if self.alike is not None:
-            return self.alike.demand_model.with_counters(self.system, self.notes)
-        return DemandModel(self.system, self.notes, self.settings)
+        if self.alike is None:
+            found = DemandModel(self.system, self.notes, self.settings)
+        else:
+            found = self.alike.demand_model.with_counters(self.system, self.notes)
+        # The calls of the system are found once.
+        found.sites = self.dataflow.events.sites
+        return found
 
     @cached_property
     def stretches(self) -> ProcessRegions:
@@ -339,7 +343,12 @@ class TimingContext:
     def _same_demand(self, scheduled: ScheduledProcess) -> MultiframeDemand | None:
         """The demand of a process that is the same in the other context; None if there is none, or if it consists of several ones."""
         name, alike = scheduled.name, self.alike
-        if alike is None or name in alike.waiting or name in alike.decisions or alike.system.processes[name] is not scheduled.process:
+        if (
+            alike is None
+            or name in alike.waiting
+            or name in alike.decisions
+            or alike.system.processes[name] is not scheduled.process
+        ):
             return None
         return alike.demands.get(name)
 

@@ -145,10 +145,8 @@ class RouteLatencies:
         claim, method = (Claim.EXACT, EXACT) if is_exact else (Claim.BOUND, BOUNDED)
 
         def value(quantity: LatencyQuantity, time: Time | float) -> LatencyValue:
-            if quantity.is_mean:
-                whole = round(Fraction(time) / self.unit)
-            else:
-                whole = in_picoseconds(int(time), self.unit, quantity.is_upper)
+            upwards = quantity.is_upper
+            whole = round(Fraction(time) / self.unit) if quantity.is_mean else in_picoseconds(int(time), self.unit, upwards)
             return LatencyValue(quantity=quantity, value=whole, claim=claim, method=method, source=job_chains.SOURCE)
 
         # Maxima and minima are those of all jobs from the start of the system on, means those of the jobs that repeat.

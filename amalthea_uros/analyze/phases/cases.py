@@ -348,7 +348,5 @@ def least_rotation(row: Sequence[int]) -> int:
     return min(one, other)
 
 
-def _solution(
-    context: TimingContext, combination: Mapping[ExternalInput, int], alike: TimingContext | None = None
-) -> Solution:
+def _solution(context: TimingContext, combination: Mapping[ExternalInput, int], alike: TimingContext | None = None) -> Solution:
     return solve(timing_context(with_phases(context.system, combination), context.settings, alike))

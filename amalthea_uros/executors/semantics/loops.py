@@ -101,9 +101,7 @@ def busy_polls(executor: Executor) -> str:
     return reason and f"its loop has no sleep, and {reason}"
 
 
-def timing_context(
-    system: System, settings: Settings | None = None, alike: TimingContext | None = None
-) -> TimingContext:
+def timing_context(system: System, settings: Settings | None = None, alike: TimingContext | None = None) -> TimingContext:
     """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again.
 
     Parameters
