@@ -202,6 +202,7 @@ def shortened(text: str, length: int = 40) -> str:
     return text if len(text) <= length else f"{text[:length]}..."
 
 
+@lru_cache(maxsize=1024)
 def parse_time(text: str) -> Time:
     """Picoseconds of a text such as "10 ms"; ValueError as for `parse`."""
     return int(parse(text, TIME))
