@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import MAX_EMAX, ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from enum import StrEnum
 from fractions import Fraction
 from functools import lru_cache
 from math import ceil, floor
 from typing import Generic, NamedTuple, Self, TypeAlias, TypeVar
+
+from amalthea_uros._internal.records import dataclass
 
 #: Picoseconds.
 Time: TypeAlias = int

@@ -123,13 +123,12 @@ class TimingContext:
     @cached_property
     def demand_model(self) -> DemandModel:
         """Converts activities to execution demand."""
-        if self.alike is None:
-            found = DemandModel(self.system, self.notes, self.settings)
-        else:
-            found = self.alike.demand_model.with_counters(self.system, self.notes)
-        # The calls of the system are found once.
-        found.sites = self.dataflow.events.sites
-        return found
+        model = DemandModel(self.system, self.notes, self.settings)
+        # The calls of the system are looked up once.
+        model.sites = self.dataflow.events.sites
+        if self.alike is not None:
+            model.keep(self.alike.demand_model)
+        return model
 
     @cached_property
     def stretches(self) -> ProcessRegions:
@@ -139,9 +138,10 @@ class TimingContext:
     @cached_property
     def dataflow(self) -> Dataflow:
         """The positions of activities, and the links between processes."""
-        if self.alike is not None:
-            return self.alike.dataflow.with_counters(self.system)
-        return Dataflow(self.system, self.settings.communication)
+        alike = self.alike
+        return (
+            Dataflow(self.system, self.settings.communication) if alike is None else alike.dataflow.with_counters(self.system)
+        )
 
     @cached_property
     def activations(self) -> Activations:
@@ -156,9 +156,7 @@ class TimingContext:
     @cached_property
     def touching(self) -> Touching:
         """What processes can touch if something about them is unknown."""
-        if self.alike is not None:
-            return self.alike.touching
-        return Touching(self.system, self.scheduled, self.dataflow)
+        return Touching(self.system, self.scheduled, self.dataflow) if self.alike is None else self.alike.touching
 
     def time_base(self, process: str) -> int:
         """Time units per picosecond on the core of a process."""

@@ -65,8 +65,8 @@ class ChainEvaluator:
         except UnknownError as error:
             self._note_unknown(chain, error)
             return ChainResult(name=chain.name, communication="", reason=str(error))
-        passed = {events: [(route, self._stages(route)) for route in found] for events, found in paths.items()}
-        every = [each for found in passed.values() for each in found]
+        passed = {events: [(route, self._stages(route)) for route in of_path] for events, of_path in paths.items()}
+        every = [each for of_path in passed.values() for each in of_path]
         self._note_left_out(chain, left_out)
         self._note_ends(chain, tuple(paths))
         values: dict[tuple[str, ...], list[LatencyValue]] = {}

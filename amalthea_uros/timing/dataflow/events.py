@@ -102,8 +102,8 @@ class EventLocator:
 
     def keep(self, other: EventLocator, processes: Collection[str]) -> None:
         """Take over what another one knows of processes that are the same."""
-        self._positions |= {name: found for name, found in other._positions.items() if name in processes}
-        self._by_accessed |= {name: found for name, found in other._by_accessed.items() if name in processes}
+        self._positions |= {name: known for name, known in other._positions.items() if name in processes}
+        self._by_accessed |= {name: known for name, known in other._by_accessed.items() if name in processes}
 
     def positions(self, process: str) -> list[ActivityPosition]:
         """Everything that the jobs of a process do.

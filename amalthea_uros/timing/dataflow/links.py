@@ -118,11 +118,11 @@ class Dataflow:
 
     def with_counters(self, system: System) -> Dataflow:
         """The same for a system whose processes differ in the offsets of counters; what is known of equal ones is kept."""
-        found = Dataflow(system, self.communication)
-        same = {name for name, process in found.system.processes.items() if process is self.system.processes.get(name)}
-        found._named |= {key: accesses for key, accesses in self._named.items() if key[0] in same}
-        found.events.keep(self.events, same)
-        return found
+        dataflow = Dataflow(system, self.communication)
+        same = {name for name, process in dataflow.system.processes.items() if process is self.system.processes.get(name)}
+        dataflow._named |= {key: accesses for key, accesses in self._named.items() if key[0] in same}
+        dataflow.events.keep(self.events, same)
+        return dataflow
 
     def links(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
         """All links that can take the effect from one event to another: nobody states which of them is meant."""
