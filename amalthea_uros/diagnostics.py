@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+
+from amalthea_uros._internal.records import dataclass
 
 
 class Severity(StrEnum):

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import MAX_EMAX, ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from enum import StrEnum
 from fractions import Fraction
 from functools import lru_cache
 from math import ceil, floor
 from typing import Generic, NamedTuple, Self, TypeAlias, TypeVar
+
+from amalthea_uros._internal.records import dataclass
 
 #: Picoseconds.
 Time: TypeAlias = int
@@ -202,6 +203,7 @@ def shortened(text: str, length: int = 40) -> str:
     return text if len(text) <= length else f"{text[:length]}..."
 
 
+@lru_cache(maxsize=1024)
 def parse_time(text: str) -> Time:
     """Picoseconds of a text such as "10 ms"; ValueError as for `parse`."""
     return int(parse(text, TIME))

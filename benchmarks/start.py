@@ -4,7 +4,9 @@ The commands take turns, so that whatever else the computer does concerns all of
 compiled before, as those of an installed package are. With the folder of another checkout, `python benchmarks/start.py FOLDER`, its
 commands take turns with the present ones, as the figures before a change.
 
-The unit contains pydantic, a library of amuros when the targets were set; the extra `bench` has it.
+The unit is measured with one thread of OpenBLAS, to which the commands limit numpy, and with a thread for each processor, as numpy
+has it by itself: on an idle computer these wait busily, so that the unit is longer than on a busy one. Multiples are those of one
+thread. The unit contains pydantic, a library of amuros when the targets were set; the extra `bench` has it.
 """
 
 from __future__ import annotations
@@ -21,6 +23,9 @@ ROOT = Path(__file__).parents[1]
 SAMPLES = ROOT / "samples"
 APPLICATION, MODEL = (SAMPLES / f"bodas-test-advanced.{suffix}" for suffix in ("yaml", "amxmi"))
 IMPORTS = "import numpy, click, yaml, pydantic"
+ONE_THREAD, MORE_THREADS = f"{IMPORTS}, one thread", f"{IMPORTS}, a thread for each processor"
+#: The unit -> the threads of OpenBLAS.
+UNITS = {ONE_THREAD: 1, MORE_THREADS: os.cpu_count()}
 COMMANDS = {
     "amuros --help": ["--help"],
     "amuros analyze app.yaml": ["analyze", APPLICATION],
@@ -37,21 +42,23 @@ def main() -> None:
         sys.exit("the unit needs pydantic: pip install 'amuros[bench]'")
     roots = [ROOT, *map(Path, sys.argv[1:2])]
     calls = {(name, root): ["-m", "amalthea_uros", *map(str, words)] for name, words in COMMANDS.items() for root in roots}
-    calls[IMPORTS, ROOT] = ["-c", IMPORTS]
+    calls |= {(unit, ROOT): ["-c", IMPORTS] for unit in UNITS}
     with TemporaryDirectory() as folder:
         # The first round compiles.
-        rounds = [{call: _cpu(words, folder, call[1]) for call, words in calls.items()} for _ in range(ROUNDS + 1)][1:]
+        rounds = [{call: _cpu(words, folder, *call) for call, words in calls.items()} for _ in range(ROUNDS + 1)][1:]
     least = {call: min(each[call] for each in rounds) for call in calls}
-    unit = least[IMPORTS, ROOT]
-    print(f"{IMPORTS}: {unit:.2f} s of CPU time")
+    for name in UNITS:
+        print(f"{name}: {least[name, ROOT]:.2f} s of CPU time")
+    unit = least[ONE_THREAD, ROOT]
     for name in COMMANDS:
         now, *before = (f"{least[name, root]:.2f} s, {least[name, root] / unit:.1f} times the imports" for root in roots)
         print(f"{name}: {now}{''.join(f'; before {each}' for each in before)}")
 
 
-def _cpu(words: list[str], folder: str, root: Path) -> float:
+def _cpu(words: list[str], folder: str, name: str, root: Path) -> float:
     """Seconds of CPU time of a process of Python."""
     own = {"PYTHONPATH": str(root), "PYTHONPYCACHEPREFIX": str(Path(folder, "compiled"))}
+    own["OPENBLAS_NUM_THREADS"] = str(UNITS.get(name, 1))
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"} | own
     streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     process = subprocess.Popen([sys.executable, *words], cwd=folder, env=environment, **streams)

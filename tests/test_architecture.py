@@ -12,12 +12,12 @@ from support import ROOT
 from amalthea_uros import Settings, analyze_files
 
 ROOMS = {
-    "diagnostics": (),
-    "errors": ("diagnostics",),
     "_internal": (),
+    "diagnostics": ("_internal",),
+    "errors": ("diagnostics",),
     "names": ("_internal", "errors"),
     "_version": (),
-    "units": (),
+    "units": ("_internal",),
     "findings": BASE,
     "perf": BASE,
     "timing": (*BASE, "perf"),

@@ -9,9 +9,10 @@ else about it, and a short command imports five hundred classes. Here a class ha
 from __future__ import annotations
 
 import dataclasses
+import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, Field
-from functools import cache
+from functools import cache, partial
 from operator import attrgetter
 from reprlib import recursive_repr
 from types import CodeType, FunctionType
@@ -27,17 +28,12 @@ else:
 
     def replace(one: Any, /, **changes: Any) -> Any:
         """As `dataclasses.replace`, which examines all fields for each object anew."""
-        for name in _parameters_of(type(one)):
-            if name not in changes:
-                changes[name] = getattr(one, name)
-        return type(one)(**changes)
+        names, values = _parameters_of(type(one))
+        return type(one)(**(dict(zip(names, values(one), strict=True)) | changes))
 
     def dataclass(cls: Any = None, /, **options: bool) -> Any:
         """As `dataclasses.dataclass`, with the options `frozen`, `slots`, `kw_only`, `eq`, `repr` and `order`."""
-        if cls is None:
-            return lambda each: dataclass(each, **options)
-        # Classes whose objects have an order are few.
-        return dataclasses.dataclass(**options)(cls) if options.get("order") else _record(cls, **options)
+        return (lambda each: _record(each, **options)) if cls is None else _record(cls, **options)
 
 
 def _record(cls: Any, *, frozen: bool = False, slots: bool = False, kw_only: bool = False, **shown: bool) -> Any:
@@ -152,6 +148,8 @@ def _members(own: _OwnFields, *, slots: bool, frozen: bool, **shown: bool) -> di
         members["__repr__"] = _Later(_text)
     if shown.get("eq", True):
         members |= {"__eq__": _Later(_equality), "__hash__": _Later(_hash) if frozen else None}
+    if shown.get("order"):
+        members |= {name: _Later(partial(_comparison, compare)) for name, compare in _COMPARISONS.items()}
     if frozen:
         members |= {"__setattr__": _Later(_refusal), "__delattr__": _Later(_refusal_to_delete)}
         members |= {"__getstate__": _Later(_state), "__setstate__": _Later(_restoration)} if slots else {}
@@ -169,8 +167,10 @@ def _positional(owner: Any) -> tuple[str, ...]:
 
 
 @cache
-def _parameters_of(kind: Any) -> tuple[str, ...]:
-    return tuple([each.name for each in dataclasses.fields(kind) if each.init])
+def _parameters_of(kind: Any) -> tuple[Sequence[str], Callable[[Any], tuple[Any, ...]]]:
+    """The names of what a constructor takes, and a function that returns their values."""
+    names = [each.name for each in dataclasses.fields(kind) if each.init]
+    return names, _values(names)
 
 
 def _constructor(owner: Any, *, frozen: bool) -> Any:
@@ -277,6 +277,19 @@ def _equality(owner: Any) -> Callable[[Any, object], Any]:
         return values(self) == values(other) if other.__class__ is self.__class__ else NotImplemented
 
     return is_equal
+
+
+_COMPARISONS = {"__lt__": operator.lt, "__le__": operator.le, "__gt__": operator.gt, "__ge__": operator.ge}
+
+
+def _comparison(compare: Callable[[Any, Any], bool], owner: Any) -> Callable[[Any, object], Any]:
+    """A method by which objects have the order of their values."""
+    values = _values([each.name for each in dataclasses.fields(owner) if each.compare])
+
+    def compares(self: Any, other: object) -> Any:
+        return compare(values(self), values(other)) if other.__class__ is self.__class__ else NotImplemented
+
+    return compares
 
 
 def _hash(owner: Any) -> Callable[[Any], int]:

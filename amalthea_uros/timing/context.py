@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 from typing import TypeVar
 
-from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.os import Policy, Scheduler
 from amalthea_uros.perf.stimuli import EventTriggered, InterProcess
@@ -59,6 +59,7 @@ class TimingContext:
     waiting : processes whose waits for events depend on response times; `demands` has those of which the solution knows a bound
     unclear_locks : why the critical sections of a process are unknown
     unknown_demands : why the execution demand of a process does not follow from its activities
+    alike : of a system whose processes differ only in the offsets of counters; what does not depend on these is taken from it
     open_semaphores : those without a ceiling, or held while waiting for one without: others than the holder delay who waits
     """
 
@@ -73,19 +74,26 @@ class TimingContext:
     unclear_locks: dict[str, str] = field(default_factory=dict)
     waiting: dict[str, WaitingProcess] = field(default_factory=dict)
     unknown_demands: Mapping[str, str] = field(default_factory=dict)
+    alike: TimingContext | None = None
     open_semaphores: frozenset[str] = frozenset()
 
     @classmethod
     def of(
-        cls, system: System, settings: Settings | None = None, *, unknown_demands: Mapping[str, str] | None = None
+        cls,
+        system: System,
+        settings: Settings | None = None,
+        *,
+        unknown_demands: Mapping[str, str] | None = None,
+        alike: TimingContext | None = None,
     ) -> TimingContext:
         """The timing context of a system.
 
         Parameters
         ----------
         unknown_demands : why the jobs of processes do not only execute what their activities say
+        alike : the context of a system whose processes differ only in the offsets of counters, with the same settings
         """
-        context = cls.of_scheduling(with_bounded_arrivals(system), settings)
+        context = cls.of_scheduling(with_bounded_arrivals(system), settings, alike)
         context.unknown_demands = unknown_demands or {}
         for sentence in arrival_assumptions(system):
             context.notes.assume(sentence)
@@ -94,12 +102,14 @@ class TimingContext:
         return context
 
     @classmethod
-    def of_scheduling(cls, system: System, settings: Settings | None = None) -> TimingContext:
+    def of_scheduling(
+        cls, system: System, settings: Settings | None = None, alike: TimingContext | None = None
+    ) -> TimingContext:
         """The same without demands and critical sections, for what follows the activities one by one."""
         settings = settings or Settings()
         if settings.quantile is not None:
             system = with_quantiles(system, settings.quantile)
-        context = cls(with_direct_calls(system), settings)
+        context = cls(with_direct_calls(system), settings, alike=alike)
         if context.system is not system:
             context.notes.assume("clients execute the runnables of synchronous servers that no process calls")
         if has_overhead_of_tasks(system):
@@ -113,7 +123,12 @@ class TimingContext:
     @cached_property
     def demand_model(self) -> DemandModel:
         """Converts activities to execution demand."""
-        return DemandModel(self.system, self.notes, self.settings)
+        model = DemandModel(self.system, self.notes, self.settings)
+        # The calls of the system are looked up once.
+        model.sites = self.dataflow.events.sites
+        if self.alike is not None:
+            model.keep(self.alike.demand_model)
+        return model
 
     @cached_property
     def stretches(self) -> ProcessRegions:
@@ -123,7 +138,10 @@ class TimingContext:
     @cached_property
     def dataflow(self) -> Dataflow:
         """The positions of activities, and the links between processes."""
-        return Dataflow(self.system, self.settings.communication)
+        alike = self.alike
+        return (
+            Dataflow(self.system, self.settings.communication) if alike is None else alike.dataflow.with_counters(self.system)
+        )
 
     @cached_property
     def activations(self) -> Activations:
@@ -138,7 +156,7 @@ class TimingContext:
     @cached_property
     def touching(self) -> Touching:
         """What processes can touch if something about them is unknown."""
-        return Touching(self.system, self.scheduled, self.dataflow)
+        return Touching(self.system, self.scheduled, self.dataflow) if self.alike is None else self.alike.touching
 
     def time_base(self, process: str) -> int:
         """Time units per picosecond on the core of a process."""
@@ -241,6 +259,12 @@ class TimingContext:
             found.setdefault((item.core, item.server), []).append(item)
         return {key: sorted(items, key=lambda item: item.rank, reverse=True) for key, items in found.items()}
 
+    @property
+    def is_everything_scheduled(self) -> bool:
+        """Whether each process is scheduled, and allocated once."""
+        mapping = self.system.mapping
+        return len(self.scheduled) == len(self.system.processes) == len(mapping.tasks) + len(mapping.isrs)
+
     def mark_unknown(self, name: str, reason: str) -> None:
         """Record why the response time of a process is unknown."""
         self.reasons.setdefault(name, reason)
@@ -262,6 +286,10 @@ class TimingContext:
 
     def _schedule(self) -> None:
         """Find core, rank and deadline of each process."""
+        if self.alike is not None and self.alike.is_everything_scheduled:
+            processes, self.servers = self.system.processes, self.alike.servers
+            self.scheduled = {name: replace(item, process=processes[name]) for name, item in self.alike.scheduled.items()}
+            return
         scheduling = SchedulingOrder(self.system, self.notes, response_time_limits(self.system), self.servers)
         for allocation in self.system.mapping.tasks:
             try:
@@ -292,7 +320,9 @@ class TimingContext:
                 if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownError(reason)
                 waits = awaited_events(scheduled.process, self.activations)
-                demand = (self.executing if waits else model).of_process(scheduled.process, scheduled.core)
+                demand = self._same_demand(scheduled) or (self.executing if waits else model).of_process(
+                    scheduled.process, scheduled.core
+                )
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownError("it has no execution time, and neither have the runnables that it calls")
                 if name in self.decisions:
@@ -307,6 +337,18 @@ class TimingContext:
             except UnknownError as error:
                 self.notes.warning("ANA004", f"the execution demand of {name!r} is unknown: {error}", scheduled.process)
                 self.mark_unknown(name, str(error))
+
+    def _same_demand(self, scheduled: ScheduledProcess) -> MultiframeDemand | None:
+        """The demand of a process that is the same in the other context; None if there is none, or if it consists of several ones."""
+        name, alike = scheduled.name, self.alike
+        if (
+            alike is None
+            or name in alike.waiting
+            or name in alike.decisions
+            or alike.system.processes[name] is not scheduled.process
+        ):
+            return None
+        return alike.demands.get(name)
 
     @cached_property
     def executing(self) -> DemandModel:

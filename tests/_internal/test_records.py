@@ -17,6 +17,7 @@ FORMS = [
     {"frozen": True},
     {},
     {"frozen": True, "slots": True, "kw_only": True},
+    {"frozen": True, "slots": True, "order": True},
 ]
 
 
@@ -40,6 +41,15 @@ def _pair(**options):
         return type("Point", (), {key: value for key, value in vars(Point).items() if key not in ("__dict__", "__weakref__")})
 
     return dataclasses.dataclass(**options)(again()), dataclass(**options)(again())
+
+
+def test_objects_have_the_order_of_their_values():
+    for kind in _pair(frozen=True, order=True):
+        first, same, later = kind(x=1, y=(2,)), kind(x=1, y=(2,), secret=9), kind(x=2)
+        assert (first < later, later < first, first < same) == (True, False, False)
+        assert (first <= same, same >= first, first > same, later > first) == (True, True, False, True)
+        with pytest.raises(TypeError, match="not supported between instances"):
+            first < 1  # noqa: B015
 
 
 @pytest.mark.parametrize("options", FORMS, ids=str)

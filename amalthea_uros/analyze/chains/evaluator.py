@@ -65,14 +65,15 @@ class ChainEvaluator:
         except UnknownError as error:
             self._note_unknown(chain, error)
             return ChainResult(name=chain.name, communication="", reason=str(error))
-        every = [route for found in paths.values() for route in found]
+        passed = {events: [(route, self._stages(route)) for route in of_path] for events, of_path in paths.items()}
+        every = [each for of_path in passed.values() for each in of_path]
         self._note_left_out(chain, left_out)
         self._note_ends(chain, tuple(paths))
         values: dict[tuple[str, ...], list[LatencyValue]] = {}
         why = why_unbounded = reason = ""
-        for events, of_path in paths.items():
+        for events, of_path in passed.items():
             try:
-                methods = [self.latencies(route) for route in of_path]
+                methods = [self._latencies(route, through) for route, through in of_path]
                 of_methods = [list(method.values()) for method in methods]
             except UnknownError as error:
                 reason, values[events] = str(error), []
@@ -96,8 +97,8 @@ class ChainEvaluator:
             self.context.notes.warning("CHN003", f"the chain {chain.name!r} has no finite bound: {reason}", chain)
         return ChainResult(
             name=chain.name,
-            communication=common_communication(stage for route in every for stage in self._stages(route)),
-            routes=tuple(map(route_text, every)),
+            communication=common_communication(stage for _, through in every for stage in through),
+            routes=tuple(route_text(route) for route, _ in every),
             values=tightest,
             all_values=tuple(all_values),
             why=why,
@@ -207,6 +208,10 @@ class ChainEvaluator:
         ------
         UnknownError : there is no bound.
         """
+        return self._latencies(route, self._stages(route))
+
+    def _latencies(self, route: Route, through: Sequence[Stage]) -> RouteLatencies:
+        """The same, by the stages of the route."""
         for link in route.links:
             if link.kind is LinkKind.MESSAGE:
                 raise UnknownError(
@@ -215,7 +220,7 @@ class ChainEvaluator:
             if link.kind is LinkKind.DATA:
                 self._require_known_writers(link.names)
         parts: list[list[TimedStage]] = []
-        groups = self.groups(route)
+        groups = self.timing.after_ends(_groups(through))
         followers, writers = [after[0] for after in groups[1:]], [before[-1] for before in groups[:-1]]
         controllers = [self.controller(group[0].process.name) for group in groups]
         for number, (group, follower, writer) in enumerate(zip_longest(groups, followers, [None, *writers])):

@@ -6,6 +6,7 @@ In the steady state these times repeat in each cycle, so that they can be extend
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from math import lcm
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from amalthea_uros.analyze.response_times.kernel import Numbers
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ReadWriteTimes:
     """The jobs of a task that are released before `until`, in order.
 
@@ -45,6 +46,12 @@ class ReadWriteTimes:
     is_visible_at_once: bool = True
     preempts_reader: bool = False
     jobs_later: int | None = None
+
+    @cached_property
+    def reach(self) -> Time:
+        """The part of a task in the time that a job chain covers; the same tasks are in many chains, which ask several times."""
+        gap = int(np.diff(self.releases).max()) if len(self.releases) > 1 else self.cycle
+        return 2 * gap + int((np.maximum(self.reads, self.writes) - self.releases).max())
 
     def extended(self, until: Time) -> ReadWriteTimes:
         """The same for a longer time."""
@@ -84,11 +91,7 @@ def reach(chain: Sequence[ReadWriteTimes]) -> Time:
     At each task up to two periods of waiting, and the time from a release to a read or write. With bounds of these times a job can
     write before it reads, so that the time in between says nothing.
     """
-    time = 0
-    for task in chain:
-        gap = int(np.diff(task.releases).max()) if len(task.releases) > 1 else task.cycle
-        time += 2 * gap + int((np.maximum(task.reads, task.writes) - task.releases).max())
-    return time
+    return sum(task.reach for task in chain)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

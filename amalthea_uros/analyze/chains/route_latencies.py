@@ -145,8 +145,8 @@ class RouteLatencies:
         claim, method = (Claim.EXACT, EXACT) if is_exact else (Claim.BOUND, BOUNDED)
 
         def value(quantity: LatencyQuantity, time: Time | float) -> LatencyValue:
-            exactly = Fraction(time) / self.unit
-            whole = round(exactly) if quantity.is_mean else in_picoseconds(exactly, 1, quantity.is_upper)
+            upwards = quantity.is_upper
+            whole = round(Fraction(time) / self.unit) if quantity.is_mean else in_picoseconds(int(time), self.unit, upwards)
             return LatencyValue(quantity=quantity, value=whole, claim=claim, method=method, source=job_chains.SOURCE)
 
         # Maxima and minima are those of all jobs from the start of the system on, means those of the jobs that repeat.
@@ -215,7 +215,7 @@ class RouteLatencies:
     # By periods and response times
 
     def _bound(self, quantity: LatencyQuantity, time: Time, method: str, source: str) -> LatencyValue:
-        whole = in_picoseconds(time, self.unit, quantity.is_upper)
+        whole = in_picoseconds(int(time), self.unit, quantity.is_upper)
         return LatencyValue(quantity=quantity, value=whole, claim=Claim.BOUND, method=method, source=source)
 
     def _reactions(self, time: Time, tasks: Sequence[ChainTask], method: str, source: str) -> Iterator[LatencyValue]:

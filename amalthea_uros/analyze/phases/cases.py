@@ -32,6 +32,7 @@ from amalthea_uros.timing.activation.releases import (
     phase_count,
     with_phases,
 )
+from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time
 
@@ -64,7 +65,7 @@ class PhaseCases:
         if not unknown or count > MAX_COMBINATIONS:
             return None
         combinations = list(phase_combinations(unknown))
-        first = _solution(solution, combinations[0])
+        first = _solution(solution.context, combinations[0])
         if count * sum(response.jobs for response in first.responses.values()) > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
@@ -72,7 +73,10 @@ class PhaseCases:
     def solutions(self, cases: Cases) -> Iterator[tuple[int, Solution]]:
         """The numbers of the combinations of some cases, and their solutions."""
         for number in cases:
-            yield number, _solution(self.solution, self.combinations[number]) if number else self.first
+            yield number, self._solution(number) if number else self.first
+
+    def _solution(self, number: int) -> Solution:
+        return _solution(self.solution.context, self.combinations[number], self.first.context)
 
     def of_everything(self) -> Cases:
         """The cases of a whole system: combinations of one case can differ in no result."""
@@ -96,7 +100,7 @@ class PhaseCases:
         if self._is_untouched(name):
             return self._same
         slots = self._slots([name])
-        return self._single if slots is None else self._by_key([slots.row(each, name) for each in self.combinations])
+        return self._single if slots is None else self._by_key(slots.rows(name))
 
     def of_chain(self, chain: EventChain) -> Cases:
         """The cases of the latencies of a chain."""
@@ -106,7 +110,7 @@ class PhaseCases:
         slots = self._slots(passed)
         if slots is None:
             return self._single
-        return self._by_key([slots.row(each) for each in self.combinations])
+        return self._by_key(slots.rows())
 
     @cached_property
     def _evaluation(self) -> ChainEvaluator:
@@ -176,7 +180,12 @@ class PhaseCases:
         periods = [task.releases.period for task in tasks.values()]
         lengths = sorted({gcd(*periods), *periods, lcm(*periods)})
         length = next((length for length in lengths if all(task.ends_in_slots(length) for task in tasks.values())), None)
-        return None if length is None else self._made_slots.setdefault(frozenset(tasks), _Slots(tasks, length))
+        if length is None:
+            return None
+        key = frozenset(tasks)
+        if key not in self._made_slots:
+            self._made_slots[key] = _Slots(tasks, length, self.combinations)
+        return self._made_slots[key]
 
     @cached_property
     def _made_slots(self) -> dict[frozenset[str], _Slots]:
@@ -234,12 +243,14 @@ class _SlotTask:
         each = zip(phases, self.counters, strict=True)
         return list(zip(*(_selected(phase, counter.prescaler, jobs) for phase, counter in each), strict=True))
 
-    def phases(self, combination: Mapping[ExternalInput, int]) -> tuple[int, ...]:
-        """The first job that each counter selects."""
-        return tuple(
-            first_effect(each) if each.is_phase_known else combination[ExternalInput.of(self.name, each)]
-            for each in self.counters
-        )
+    def phases(self, combinations: Sequence[Mapping[ExternalInput, int]]) -> list[tuple[int, ...]]:
+        """The first job that each counter selects, for each combination."""
+        inputs = [None if each.is_phase_known else ExternalInput.of(self.name, each) for each in self.counters]
+        known = [first_effect(each) for each in self.counters]
+        return [
+            tuple([first if key is None else combination[key] for key, first in zip(inputs, known, strict=True)])
+            for combination in combinations
+        ]
 
 
 @cache
@@ -255,7 +266,9 @@ _NOT_COUNTED = -1
 class _Slots:
     """The slots of some tasks over a cycle."""
 
-    def __init__(self, tasks: Mapping[str, _SlotTask], length: Time) -> None:
+    def __init__(
+        self, tasks: Mapping[str, _SlotTask], length: Time, combinations: Sequence[Mapping[ExternalInput, int]]
+    ) -> None:
         self._tasks = tasks
         self._length = length
         self._cycle = lcm(length, *(task.cycle for task in tasks.values()))
@@ -263,32 +276,39 @@ class _Slots:
         self._columns: dict[tuple[str, tuple[int, ...]], list[int]] = {}
         self._cells: dict[Hashable, int] = {}
         self._contents: dict[tuple[int, ...], int] = {}
-        self._slots: dict[tuple[tuple[int, ...], ...], tuple[int, ...]] = {}
         self._rows: dict[tuple[int, ...], tuple[int, ...]] = {}
+        phases = [task.phases(combinations) for task in tasks.values()]
+        self._numbered = list(map(cache(self._numbers), zip(*phases, strict=True)))
 
-    def row(self, combination: Mapping[ExternalInput, int], name: str | None = None) -> tuple[int, ...]:
-        """What happens in each slot, by numbers, from the first slot on that makes the row the least one.
+    def rows(self, name: str | None = None) -> list[tuple[int, ...]]:
+        """For each combination what happens in each slot, by numbers, from the first slot on that makes the row the least one.
 
         Parameters
         ----------
         name : only slots in which this process is released count; None: all
         """
-        row = self._numbered(tuple([task.phases(combination) for task in self._tasks.values()]))
-        if name is not None:
-            counted = {slot for slot, _ in self._releases[name]}
-            row = tuple([number if slot in counted else _NOT_COUNTED for slot, number in enumerate(row)])
+        if name is None:
+            return list(map(self._rotated, self._numbered))
+        released = {slot for slot, _ in self._releases[name]}
+        if len(released) * self._length == self._cycle:
+            return self.rows()
+        is_counted = [slot in released for slot in range(self._cycle // self._length)]
+        return [
+            self._rotated(tuple([number if counts else _NOT_COUNTED for number, counts in zip(row, is_counted, strict=True)]))
+            for row in self._numbered
+        ]
+
+    def _rotated(self, row: tuple[int, ...]) -> tuple[int, ...]:
         if row not in self._rows:
             start = least_rotation(row)
             self._rows[row] = row[start:] + row[:start]
         return self._rows[row]
 
-    def _numbered(self, phases: tuple[tuple[int, ...], ...]) -> tuple[int, ...]:
+    def _numbers(self, phases: tuple[tuple[int, ...], ...]) -> tuple[int, ...]:
         """The contents of the slots, by numbers, if the counters of the tasks select these first jobs."""
-        if phases not in self._slots:
-            columns = [self._column(task, own) for task, own in zip(self._tasks.values(), phases, strict=True)]
-            contents = self._contents
-            self._slots[phases] = tuple([contents.setdefault(jobs, len(contents)) for jobs in zip(*columns, strict=True)])
-        return self._slots[phases]
+        columns = [self._column(task, own) for task, own in zip(self._tasks.values(), phases, strict=True)]
+        contents = self._contents
+        return tuple([contents.setdefault(jobs, len(contents)) for jobs in zip(*columns, strict=True)])
 
     def _slots_of(self, task: _SlotTask) -> list[tuple[int, Time]]:
         """For each job of a cycle, the slot in which it is released, and when in the slot."""
@@ -328,6 +348,5 @@ def least_rotation(row: Sequence[int]) -> int:
     return min(one, other)
 
 
-def _solution(solution: Solution, combination: Mapping[ExternalInput, int]) -> Solution:
-    context = solution.context
-    return solve(timing_context(with_phases(context.system, combination), context.settings))
+def _solution(context: TimingContext, combination: Mapping[ExternalInput, int], alike: TimingContext | None = None) -> Solution:
+    return solve(timing_context(with_phases(context.system, combination), context.settings, alike))

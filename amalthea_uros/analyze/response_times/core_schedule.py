@@ -12,7 +12,6 @@ may still access at once, or only when it has the core again, or, if the access 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -122,7 +121,7 @@ class CoreSchedule:
 
         That ends what came before: whatever it was, the worst cases lead to the same steady state.
         """
-        return sum((task.demand.mean_worst / task.period for task in self.tasks.values()), Fraction(0)) < 1
+        return schedule.load(list(self.tasks.values())) < 1
 
     def busy_above(self, name: str) -> Busy:
         """When the core executes tasks of higher priority than one of them, in the worst case."""

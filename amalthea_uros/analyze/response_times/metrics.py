@@ -278,6 +278,8 @@ def merged(variants: Sequence[Mapping[JobMetric, Metric]], counts: Sequence[int]
     ----------
     counts : how many phases each of the variants stands for; None: one
     """
+    if len(variants) == 1:
+        return dict(variants[0])
     shared = [name for name in variants[0] if all(name in metrics for metrics in variants)]
     return {name: _merged([metrics[name] for metrics in variants], counts or [1] * len(variants)) for name in shared}
 

@@ -48,6 +48,8 @@ def solve(context: TimingContext) -> Solution:
         changing = _iterate(solution, diverging)
         if not changing:
             for core in context.system.cores:
+                if solution.is_exact(core):
+                    continue
                 solution.responses |= scheduled_responses(core, solution) or tightened(core, solution)
                 solution.responses |= raised(core, solution)
             warn_of_unknown_waits(solution)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from functools import lru_cache
 from itertools import accumulate
 from math import lcm
@@ -142,4 +143,11 @@ def fits(tasks: Sequence[PeriodicTask], until: Time) -> bool:
         return False
     if until > LIMIT or sum(until // task.period + 1 for task in tasks) > MAX_JOBS:
         return False
-    return sum(task.demand.mean_worst / task.period for task in tasks) <= 1
+    return load(tasks) <= 1
+
+
+def load(tasks: Sequence[PeriodicTask]) -> Fraction:
+    """The part of the time for which tasks execute in the long run, in the worst case."""
+    cycle = hyperperiod(tasks)
+    frames = ((frame, task.period * frame.prescaler) for task in tasks for frame in task.demand.frames)
+    return Fraction(sum(frame.worst * (cycle // interval) for frame, interval in frames), cycle)

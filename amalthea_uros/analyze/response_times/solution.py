@@ -17,7 +17,7 @@ from amalthea_uros.timing.activation.load import certain_loads, suppressible
 from amalthea_uros.timing.basics.time_base import min_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.event_models.models import EventModel
-from amalthea_uros.timing.response import Response
+from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time
 
@@ -70,6 +70,11 @@ class Solution:
             assert found is not None
             self.schedules[core] = found
         return found
+
+    def is_exact(self, core: str) -> bool:
+        """Whether the schedule of a core is known, and its response times are the exact ones."""
+        here = self.context.on_core(core)
+        return core in self.schedules and all(self.responses[item.name].claim is Claim.EXACT for item in here)
 
     def processor(self, task: str) -> ExecutorThread:
         """The processor as the thread of an executor sees it; of a solution that is complete.

@@ -56,6 +56,8 @@ def only_one(target: str, matches: Sequence[K], what: str, names: Callable[[Sequ
 def _gap(target: str, names: Sequence[str]) -> int | None:
     """How many names are left out between those of a target; None if the target is no part of the names."""
     rest = _without(target, names[-1])
+    if rest is None:
+        return None
     gap = between = 0
     for name in reversed(names[:-1]):
         if not rest:
@@ -66,7 +68,7 @@ def _gap(target: str, names: Sequence[str]) -> int | None:
         else:
             rest, gap = shorter, gap + between
             between = 0
-    return None if rest or rest is None else gap
+    return None if rest else gap
 
 
 def _without(target: str, name: str) -> str | None:

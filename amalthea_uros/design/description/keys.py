@@ -161,7 +161,7 @@ def matching(target: str, keys: Sequence[DescriptionKey]) -> list[DescriptionKey
     'middleware.executor.uros_task.loop.sleep'
     """
     target = _OTHER_WORDS.get(target, target)
-    if whole := [key for key in keys if key.full_name == target]:
+    if whole := [key for key in keys if target.endswith(key.names[-1]) and key.full_name == target]:
         return whole
     gaps = with_gaps(target, keys)
     smallest = min((gap for gap, _ in gaps), default=0)

@@ -140,9 +140,9 @@ class YamlDocument:
                 yield inner
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=16)
 def read_document(text: str) -> YamlDocument:
-    """The only document of a valid text; the places of many values are looked up in the same one."""
+    """The only document of a valid text; the places of many values are looked up in the same one, and searches edit it many times."""
     loader = _Loader(text)
     try:
         events = iter(loader.get_event, None)

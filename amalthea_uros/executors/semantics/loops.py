@@ -101,9 +101,14 @@ def busy_polls(executor: Executor) -> str:
     return reason and f"its loop has no sleep, and {reason}"
 
 
-def timing_context(system: System, settings: Settings | None = None) -> TimingContext:
-    """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again."""
-    return TimingContext.of(system, settings, unknown_demands=busy_threads(system) | _sent_again(system))
+def timing_context(system: System, settings: Settings | None = None, alike: TimingContext | None = None) -> TimingContext:
+    """The timing context of a system; the execution demand is unknown of executors that busy-poll, and of what is sent again.
+
+    Parameters
+    ----------
+    alike : as `TimingContext.of`
+    """
+    return TimingContext.of(system, settings, unknown_demands=busy_threads(system) | _sent_again(system), alike=alike)
 
 
 def busy_threads(system: System) -> dict[str, str]:

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import product
 from math import prod
+from typing import TypeVar
 
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.errors import InvalidArgumentError
@@ -30,6 +31,8 @@ from amalthea_uros.timing.basics.time_base import LIMIT
 from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents
 from amalthea_uros.timing.jobs.counters import first_effect
 from amalthea_uros.units import Time, time_text
+
+P = TypeVar("P", bound=Process)
 
 RELEASES = "periodic tasks are released at their offsets; the default offset is 0"
 
@@ -270,10 +273,11 @@ def own_counters(process: Process) -> Iterator[Counter]:
 
 
 def with_counters(system: System, change: Callable[[Process, Counter], Counter]) -> System:
-    """The system with the counters in the jobs of its processes changed."""
+    """The system with the counters in the jobs of its processes changed; a process in which none changes is the same object."""
 
-    def changed(process: Process) -> tuple[Activity, ...]:
-        return transformed(process.activities, partial(with_counter, process))
+    def changed(process: P) -> P:
+        activities = transformed(process.activities, partial(with_counter, process))
+        return process if activities == process.activities else replace(process, activities=activities)
 
     def with_counter(process: Process, activity: Activity) -> Activity:
         match activity:
@@ -286,8 +290,8 @@ def with_counters(system: System, change: Callable[[Process, Counter], Counter])
         system,
         software=replace(
             software,
-            tasks=tuple(replace(task, activities=changed(task)) for task in software.tasks),
-            isrs=tuple(replace(isr, activities=changed(isr)) for isr in software.isrs),
+            tasks=tuple(map(changed, software.tasks)),
+            isrs=tuple(map(changed, software.isrs)),
         ),
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from enum import Enum
 from typing import TypeAlias
 
@@ -99,6 +99,11 @@ class EventLocator:
 
     def __post_init__(self) -> None:
         self.sites = CallSites(self.system)
+
+    def keep(self, other: EventLocator, processes: Collection[str]) -> None:
+        """Take over what another one knows of processes that are the same."""
+        self._positions |= {name: known for name, known in other._positions.items() if name in processes}
+        self._by_accessed |= {name: known for name, known in other._by_accessed.items() if name in processes}
 
     def positions(self, process: str) -> list[ActivityPosition]:
         """Everything that the jobs of a process do.

@@ -116,6 +116,14 @@ class Dataflow:
         self.system = with_direct_calls(self.system)
         self.events = EventLocator(self.system)
 
+    def with_counters(self, system: System) -> Dataflow:
+        """The same for a system whose processes differ in the offsets of counters; what is known of equal ones is kept."""
+        dataflow = Dataflow(system, self.communication)
+        same = {name for name, process in dataflow.system.processes.items() if process is self.system.processes.get(name)}
+        dataflow._named |= {key: accesses for key, accesses in self._named.items() if key[0] in same}
+        dataflow.events.keep(self.events, same)
+        return dataflow
+
     def links(self, first: EventOccurrence, then: EventOccurrence) -> tuple[Link, ...]:
         """All links that can take the effect from one event to another: nobody states which of them is meant."""
         if first.process.name == then.process.name:
@@ -255,10 +263,10 @@ class Dataflow:
 
     @cached_property
     def _fired(self) -> dict[str, list[Firing]]:
-        found: dict[str, list[Firing]] = {name: [] for name in self.system.processes}
-        for position in self.events.all_positions():
-            if isinstance(position.activity, Trigger):
-                found[position.process.name].append(Firing(position.activity.stimulus, position))
+        found = {
+            name: [Firing(stimulus, each) for stimulus, fired in self.by_name(name, _triggers).items() for each in fired]
+            for name in self.system.processes
+        }
         events, stimuli = self.system.events_by_name, self.system.stimuli.stimuli
         reacting = [(each.name, name) for each in stimuli if isinstance(each, EventTriggered) for name in each.events]
         for stimulus, event in ((stimulus, events[name]) for stimulus, name in reacting if name in events):
@@ -336,6 +344,14 @@ def reads(position: ActivityPosition) -> tuple[str, ...]:
         case LabelAccess(label=name, kind=AccessKind.READ) | SenderReceiverAccess(label=name, kind=AccessKind.READ):
             return (name,)
         case Receive(channel=name) | ModeAccess(label=name):
+            return (name,)
+    return ()
+
+
+def _triggers(position: ActivityPosition) -> tuple[str, ...]:
+    """The stimulus that an activity triggers."""
+    match position.activity:
+        case Trigger(stimulus=name):
             return (name,)
     return ()
 

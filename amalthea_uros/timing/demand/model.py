@@ -100,6 +100,11 @@ class DemandModel:
         self.sites = CallSites(self.system)
         self.flaws = CounterFlaws(self.system)
 
+    def keep(self, other: DemandModel) -> None:
+        """Take over the model of a system whose processes differ in the offsets of counters, as far as these are irrelevant."""
+        self.flaws, self._time_bases, self._times_of_ticks = other.flaws, other._time_bases, other._times_of_ticks
+        self._of_runnables = other._of_runnables
+
     def time_base(self, core: str) -> int:
         """Time units per picosecond on a core; 1 if they would be too small, and then demand is rounded outwards."""
         if core not in self._time_bases:

@@ -192,7 +192,8 @@ class CallSites:
         for activity in activities:
             match activity:
                 case Call(runnable=name):
-                    yield name, replace(around, call=activity, is_certain=around.is_certain and self._is_once(activity))
+                    is_certain = around.is_certain and self._is_once(activity)
+                    yield name, _Site(around.caller, activity, is_certain, around.is_ordered)
                 case ServerCall(runnable=name, result=result):
                     yield from ((called, _Site(around.caller)) for called in (name, result) if called)
                 case SenderReceiverAccess(notifies=names):

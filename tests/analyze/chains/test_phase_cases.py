@@ -22,7 +22,7 @@ from amalthea_uros.perf.constraints import Bound, Constraints, LatencyConstraint
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.perf.stimuli import Counter
-from amalthea_uros.timing.activation.releases import unknown_phases
+from amalthea_uros.timing.activation.releases import unknown_phases, with_phases
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.response import Claim
 from amalthea_uros.units import MICROSECOND as US
@@ -100,6 +100,19 @@ def test_the_results_are_those_of_all_combinations(built):
         for method in ("_of_process", "of_chain"):
             patch.setattr(PhaseCases, method, lambda cases, _: cases._single)
         assert found == everything(analyze_system(built))
+
+
+@examples(10)
+@given(systems())
+def test_combinations_share_only_what_each_of_them_finds_alone(built):
+    cases = PhaseCases.of(solve(TimingContext.of(built)), unknown_phases(built))
+    for number, found in cases.solutions(cases._single) if cases else ():
+        alone = solve(TimingContext.of(with_phases(built, cases.combinations[number])))
+        assert (found.responses, found.reasons, found.event_models) == (alone.responses, alone.reasons, alone.event_models)
+        assert (found.context.scheduled, found.context.demands) == (alone.context.scheduled, alone.context.demands)
+        for name in alone.context.system.processes:
+            assert found.context.dataflow.events.positions(name) == alone.context.dataflow.events.positions(name)
+            assert found.context.dataflow.firings(name) == alone.context.dataflow.firings(name)
 
 
 def test_few_combinations_of_the_sample_are_evaluated(monkeypatch):
