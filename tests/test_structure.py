@@ -38,7 +38,7 @@ LINES = {
     "measure": 1124,
     "metamodel": 3292,
     "names": 17,
-    "perf": 1826,
+    "perf": 1837,
     "platforms": 0,
     "report": 8616,
     "services": 2680,
@@ -48,7 +48,7 @@ LINES = {
     "timing": 5732,
     "trace": 4784,
     "units": 206,
-    "uros": 7793,
+    "uros": 7815,
     "validate": 3267,
     "xmi": 8585,
 }
