@@ -16,6 +16,8 @@ from amalthea_uros.units import Time
 MOST_LOST = 1000
 #: Probabilities of losses are whole numbers of billionths.
 BILLION = 10**9
+#: The kind of events of messages for which no wire is described.
+OFF_WIRE_EVENT = "message without a wire"
 
 
 def plain_topic(topic: str | None) -> str:

@@ -53,7 +53,7 @@ def planned_network(
     description = context.description
     check_transport(description, context.notes)
     line = context.line
-    if line is None or not is_in_system(description):
+    if line is None or not (context.is_part or is_in_system(description)):
         return None
     messages = tuple(wire_messages(callbacks, context.profile))
     check_lengths(messages, line, context.notes)
