@@ -40,7 +40,7 @@ LINES = {
     "names": 17,
     "perf": 1838,
     "platforms": 0,
-    "report": 8617,
+    "report": 8642,
     "services": 2682,
     "simulate": 8623,
     "source": 3561,
