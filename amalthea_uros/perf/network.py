@@ -16,6 +16,8 @@ from amalthea_uros.units import Time
 MOST_LOST = 1000
 #: Probabilities of losses are whole numbers of billionths.
 BILLION = 10**9
+#: The kind of events of messages for which no wire is described.
+OFF_WIRE_EVENT = "message without a wire"
 
 
 def plain_topic(topic: str | None) -> str:
@@ -24,13 +26,36 @@ def plain_topic(topic: str | None) -> str:
 
 
 def request_topic(service: str) -> str:
-    """The topic of the requests of a service or an action: ROS 2 carries a service as two topics."""
+    """The topic of the requests of a service: ROS 2 carries a service as two topics."""
     return f"{plain_topic(service)}/request"
 
 
 def response_topic(service: str) -> str:
-    """The topic of the responses of a service, or of the results of an action."""
+    """The topic of the responses of a service."""
     return f"{plain_topic(service)}/response"
+
+
+class ActionPart(StrEnum):
+    """The services and topics of which an action consists, as `ros2/rcl rcl_action/src/rcl_action/names.c` calls them."""
+
+    GOALS = "send_goal"
+    RESULTS = "get_result"
+    CANCELLING = "cancel_goal"
+    FEEDBACK = "feedback"
+
+    def of(self, action: str) -> str:
+        """The name of the service or topic of an action."""
+        return f"{action}{_OF_ACTION}{self}"
+
+
+#: Between the name of an action and that of one of its parts.
+_OF_ACTION = "/_action/"
+
+
+def conversation(service: str) -> str:
+    """What requests and their responses have in common: the service, or the action of which it is a part."""
+    name, mark, _ = plain_topic(service).partition(_OF_ACTION)
+    return f"{name}{mark}"
 
 
 class WireKind(StrEnum):

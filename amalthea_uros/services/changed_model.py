@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.paths import StrPath, is_description
@@ -10,6 +11,7 @@ from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system, update_model
 from amalthea_uros.design.changes.key import Configuration
+from amalthea_uros.design.description.other_folder import moved
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.services.changed import description_origin
 from amalthea_uros.services.files import save_text
@@ -80,7 +82,7 @@ def _write_edited(opened: SystemInput, changes: Sequence[Change], settings: Sett
 
     origin = description_origin(opened, settings)
     if is_description(path):
-        save_text(path, origin.edited(changes))
+        save_text(path, moved(origin.edited(changes), origin.path, Path(path)))
         return
     edited, assumed = origin.rebuilt(changes)
     save(build_model(changed_system(edited, assumed, settings)), path)

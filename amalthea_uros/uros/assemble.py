@@ -95,6 +95,8 @@ def assemble(
     platform: str | None,
     database: Sequence[ForeignFrame] = (),
     assumptions: Sequence[str] = (),
+    *,
+    is_part: bool = False,
 ) -> Assembly:
     """The system that a description describes.
 
@@ -104,6 +106,7 @@ def assemble(
     platform : the name that execution times use for the hardware; None if it has none
     database : foreign frames on the CAN bus, from the DBC file that the description names
     assumptions : about measured times in the description, in sentences
+    is_part : whether it describes a controller of a robot
 
     Raises
     ------
@@ -116,7 +119,12 @@ def assemble(
     if target is None or profile is None:
         raise notes.refusal()
     context = AssemblyContext(
-        description=description, controller=target, notes=notes, profile=profile, assumptions=tuple(assumptions)
+        description=description,
+        controller=target,
+        notes=notes,
+        profile=profile,
+        assumptions=tuple(assumptions),
+        is_part=is_part,
     )
     assembly = _assembly(context, hardware, database)
     if notes.has_errors:

@@ -15,7 +15,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.perf.activities import AccessKind, Call, LabelAccess, walk
 from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, ProcessEvent
-from amalthea_uros.perf.network import Direction, Network, Purpose, plain_topic, request_topic, response_topic
+from amalthea_uros.perf.network import OFF_WIRE_EVENT, Direction, Network, Purpose, plain_topic, request_topic, response_topic
 from amalthea_uros.perf.qualified import qualified, qualified_name
 from amalthea_uros.perf.software import Runnable
 from amalthea_uros.uros.application.callbacks import Callback, body_name
@@ -207,7 +207,7 @@ class Topics:
             if is_of_callback and plain_topic(each.topic) in names:
                 change = ProcessChange.ACTIVATE if is_received else ProcessChange.TERMINATE
                 return MessageOfTopic(ProcessEvent(name=name, process=each.name, change=change), callback, each.processes)
-        return MessageOfTopic(CustomEvent(name=name), callback)
+        return MessageOfTopic(CustomEvent(name=name, kind=OFF_WIRE_EVENT), callback)
 
 
 def _names(message: Message) -> Iterable[str]:

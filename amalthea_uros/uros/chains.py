@@ -219,8 +219,10 @@ class ChainBuilder:
 
     def _message_event(self, message: MessageOfTopic, topic: str, location: Location | None) -> str:
         if not message.is_on_wire:
-            text = f"the latency of messages of {topic!r} is unknown, because no transport is described"
-            self.notes.warning("CHN010", text, location, "Describe 'transport' and 'agent' of the middleware.")
+            text = (
+                f"the latency of messages of {topic!r} is unknown, because no transport is described for {message.callback!r}"
+            )
+            self.notes.warning("CHN010", text, location, "Describe 'transport' and 'agent' of its middleware.")
         self.events.setdefault(message.event.name, message.event)
         return message.event.name
 

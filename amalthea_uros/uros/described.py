@@ -78,12 +78,12 @@ def describe_content(content: Mapping[str, Any]) -> Described:
     return _described(content_draft(content, Description), Path())
 
 
-def _described(draft: Draft[Description], folder: Path, platform: str | None = None) -> Described:
+def _described(draft: Draft[Description], folder: Path, platform: str | None = None, *, is_part: bool = False) -> Described:
     """What a draft describes, unless something in it is wrong."""
     try:
         if draft.section is None:
             raise ReadError(draft.findings)
-        found = described_section(draft.section, folder, platform)
+        found = described_section(draft.section, folder, platform, is_part=is_part)
     except ReadError as error:
         raise ReadError(draft.with_more(error.findings)) from None
     if draft.findings:
@@ -91,13 +91,16 @@ def _described(draft: Draft[Description], folder: Path, platform: str | None = N
     return found
 
 
-def described_section(description: Description, folder: Path, platform: str | None = None) -> Described:
+def described_section(
+    description: Description, folder: Path, platform: str | None = None, *, is_part: bool = False
+) -> Described:
     """The meaning of a description that was read before.
 
     Parameters
     ----------
     folder : what the files that it names are relative to
     platform : replaces the platform that it names
+    is_part : whether it describes a controller of a robot, to which others send messages
 
     Raises
     ------
@@ -113,7 +116,7 @@ def described_section(description: Description, folder: Path, platform: str | No
         return _robot(description, folder)
     whole, name, findings, assumptions = complete(description, folder, platform)
     try:
-        assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder), assumptions)
+        assembly = assemble(whole, whole.hardware, name, database_frames(whole, folder), assumptions, is_part=is_part)
     except ReadError as error:
         raise ReadError([*findings, *error.findings]) from None
     if findings:
@@ -146,14 +149,14 @@ _COMPLETED = ("hardware", "os", "middleware")
 def _controller(section: RobotController, folder: Path) -> Described:
     """A controller of a robot, described in its file or in that of the robot."""
     if section.file is None:
-        return described_section(Description.of_controller(section), folder)
+        return described_section(Description.of_controller(section), folder, is_part=True)
     place = section.location("file")
     path = named_file("file of a controller", section.file, folder, place)
     draft = text_draft(path, description_text(path), Description)
     if draft.section is not None and draft.section.controllers:
         message = f"{str(path)!r} describes a robot of several controllers, not one of them"
         raise ReadError([Finding("APP003", Severity.ERROR, message, place, "Name the files of its controllers instead.")])
-    return _described(draft, folder_of(path))
+    return _described(draft, folder_of(path), is_part=True)
 
 
 def database_frames(description: Description, folder: Path) -> tuple[ForeignFrame, ...]:

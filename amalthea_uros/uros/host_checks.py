@@ -8,7 +8,7 @@ from itertools import combinations
 from typing import TypeAlias
 
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.perf.network import plain_topic, request_topic, response_topic
+from amalthea_uros.perf.network import ActionPart, conversation, plain_topic, request_topic, response_topic
 from amalthea_uros.spec import host as spec
 from amalthea_uros.spec.application import NodeSection
 from amalthea_uros.spec.section import DescriptionSection
@@ -72,26 +72,29 @@ class HostChecks:
         clients = [(node, each) for node in nodes for each in node.clients]
         problems.unique("service of the host", ((each.service, each.location("service")) for _, each in services))
         names = {plain_topic(each.service) for _, each in services}
-        names |= {plain_topic(each.name) for node in self.nodes for each in (*node.services, *node.action_servers)}
+        names |= {plain_topic(each.name) for node in self.nodes for each in node.services}
+        actions = [plain_topic(each.name) for node in self.nodes for each in node.action_servers]
+        called, answered = {*names, *map(ActionPart.GOALS.of, actions)}, {*names, *map(ActionPart.RESULTS.of, actions)}
         calls = [(node, each, service) for node in nodes for each in callbacks_of(node) for service in each.calls]
         for _, caller, service in calls:
-            if plain_topic(service) not in names:
-                problems.undefined("service", service, names, caller.location("calls"))
+            if plain_topic(service) not in called:
+                problems.undefined("service", service, called, caller.location("calls"))
         for _, client in clients:
-            if plain_topic(client.service) not in names:
-                problems.undefined("service", client.service, names, client.location("service"))
-        self._check_callers([(node, service) for node, _, service in calls], names)
+            if plain_topic(client.service) not in answered:
+                problems.undefined("service", client.service, answered, client.location("service"))
+        self._check_callers([(node, service) for node, _, service in calls], {*map(conversation, called)})
         problems.unique("client of a service", ((each.service, each.location("service")) for _, each in clients))
 
-    def _check_callers(self, calls: Iterable[tuple[AnyNode, str]], services: Collection[str]) -> None:
+    def _check_callers(self, calls: Iterable[tuple[AnyNode, str]], conversations: Collection[str]) -> None:
         """Report clients of services that other nodes call, too."""
         nodes: list[AnyNode] = [*self.section.nodes, *self.nodes]
         clients = [(node, each.service, each.location("service")) for node in nodes for each in node.clients]
-        clients += [(node, each.action, each.location("action")) for node in self.nodes for each in node.action_clients]
+        actions = [(node, each) for node in self.nodes for each in node.action_clients]
+        clients += [(node, ActionPart.GOALS.of(each.action), each.location("action")) for node, each in actions]
         callers = [*calls, *((node, service) for node, service, _ in clients)]
         for _, service, location in clients:
-            called = {id(other): other.name for other, each in callers if plain_topic(each) == plain_topic(service)}
-            if len(called) > 1 and plain_topic(service) in services:
+            called = {id(other): other.name for other, each in callers if conversation(each) == conversation(service)}
+            if len(called) > 1 and conversation(service) in conversations:
                 message = f"the service {service!r} is called in the nodes {', '.join(sorted(called.values()))}"
                 self.problems.error(
                     "APP003",
@@ -109,10 +112,13 @@ class HostChecks:
         published |= {plain_topic(each.topic) for node in nodes for each in node.publishers}
         taken = {plain_topic(each.topic) for node in nodes for each in node.subscriptions}
         called = {each.service for node in nodes for each in node.clients}
-        called |= {each.action for node in nodes for each in node.action_clients}
-        served = {each.name for node in nodes for each in (*node.services, *node.action_servers)}
-        published |= {*map(request_topic, called), *map(response_topic, served)}
-        taken |= {*map(response_topic, called), *map(request_topic, served)}
+        served = {each.name for node in nodes for each in node.services}
+        sends = {each.action for node in nodes for each in node.action_clients}
+        acts = {each.name for node in nodes for each in node.action_servers}
+        goals, results = ActionPart.GOALS.of, ActionPart.RESULTS.of
+        published |= {*map(request_topic, {*called, *map(goals, sends)}), *map(response_topic, {*served, *map(results, acts)})}
+        published |= {plain_topic(ActionPart.FEEDBACK.of(action)) for action in acts}
+        taken |= {*map(response_topic, {*called, *map(results, sends)}), *map(request_topic, {*served, *map(goals, acts)})}
         taken |= {own for each in self._callbacks() if (own := topic_of(each)) is not None}
         for name, topic in topics.items():
             if name not in published | taken:

@@ -180,3 +180,25 @@ def test_a_network_that_cannot_be_read_is_a_finding(before, after, message, left
 def test_no_text_is_a_crash(text):
     with pytest.raises(UnknownError):
         from_text(Executor, text, task="T")
+
+
+@pytest.mark.parametrize(
+    ("name", "topic", "is_old"),
+    [
+        ("add_request_to_Serve", "add", True),
+        ("arm_add_response_from_add", "add", True),
+        ("add_request_to_Serve", "add/request", False),
+        ("move/_action/send_goal_request_to_Move", "move/_action/send_goal/request", False),
+        ("add_topic_to_add_request_again", "add", False),
+        ("any", None, False),
+    ],
+)
+def test_messages_of_services_in_older_builds_are_findings(name, topic, is_old):
+    task, core = Task(name=name), Core(name="C", type=None, clock=None)
+    network = replace(
+        NETWORK, transmissions=(Transmission(name=name, wire="W", direction=Direction.TO_CONTROLLER, topic=topic),)
+    )
+    system = System(
+        hardware=Hardware(structures=(Structure(name="S", cores=(core,)),)), software=Software(tasks=(task,)), network=network
+    )
+    assert ("EXT006" in [each.rule for each in extract(build_model(system)).findings]) is is_old

@@ -122,6 +122,7 @@ def test_only_the_value_differs_in_the_written_file(tmp_path):
         ("On_Cmd.core=Core_3", "is not valid: 'On_Cmd' runs in the executor"),
         ("On_Cmd.scheduler=Scheduler", "'On_Cmd.scheduler'; 'On_Cmd' has name"),
         ("Nobody.period=1ms", "unknown object 'Nobody'"),
+        ("fastness=1ms", "no object has this key; name a value as in OBJECT.KEY=VALUE"),
     ],
 )
 def test_what_cannot_be_set_is_explained(change, words):

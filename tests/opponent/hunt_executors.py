@@ -9,7 +9,8 @@
   two seeds: no observed value is beyond a bound, nothing is lost that cannot be, and no limit is missed that is met;
 - items: the same of a description in which the thread of a loop does more than spin;
 - losses: the same of a description whose wire loses a stated number of messages;
-- robots: the same of several controllers, which send each other messages, with a host.
+- robots: the same of several controllers, which send each other messages, with a host;
+- actions, robot-actions: the same of both, with actions instead of most services.
 
 `--only calls` and `--only bounds` leave the other one out. It prints each kind of failure with its seed, and writes the smallest
 description of each to the folder. At the end it prints a table: for each construct the number of observed maxima of applications with
@@ -27,6 +28,7 @@ from functools import partial
 from pathlib import Path
 
 import yaml
+from opponent.executors.actions import description_with_actions, robot_with_actions
 from opponent.executors.calls import different_calls
 from opponent.executors.claims import false_claims, runs_of
 from opponent.executors.descriptions import random_description
@@ -44,6 +46,8 @@ DESCRIPTIONS = {
     "items": description_with_items,
     "losses": description_with_losses,
     "robots": random_robot,
+    "actions": description_with_actions,
+    "robot-actions": robot_with_actions,
 }
 #: The runs of those that need others.
 RUNS = {"losses": runs_of(2 * SECOND, (1,))}

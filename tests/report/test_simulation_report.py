@@ -179,6 +179,15 @@ def test_what_there_is_and_what_is_left_out():
             "Control: 2 activations lost",
         ),
         (
+            replace(
+                SIMULATION,
+                processes=Results(
+                    [replace(CONTROL, deadline=20 * US, verdict=ObservedVerdict.MISSED, reason="2 activations lost")]
+                ),
+            ),
+            "Control responds after 29 us, deadline 20 us; 2 activations lost",
+        ),
+        (
             replace(SIMULATION, processes=Results([replace(CONTROL, verdict=None)])),
             "no deadline, requirement or constraint to judge",
         ),

@@ -112,9 +112,6 @@ class Segments:
         try:
             occurrences = self.context.dataflow.events.of(event)
         except UnknownError as error:
-            if isinstance(event, CustomEvent):
-                what = "describe 'transport' and 'agent' of the middleware"
-                raise UnknownError(f"{event.name!r} occurs outside the model: {what}") from None
             raise UnknownError(str(error)) from None
         possible = {self._at(event, occurrence) for occurrence in occurrences}
         if before in possible:

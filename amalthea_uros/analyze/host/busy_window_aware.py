@@ -27,9 +27,21 @@ def latest(index: int, ready: ReadySet, known: Mapping[str, Time]) -> Time:
     if ready.supply is FULL and all(other.events.eta_plus(limit) <= calls for other in ready.tasks):
         return limit
     window = Interference.of(ready.tasks, ready.supply).window(0, 0)
-    if window is None or sum(task.events.eta_plus(window) for task in ready.tasks) > _MOST_RELEASES:
+    if window is None or _has_too_many_releases(ready, window):
         return limit
     return max(min(limit, _latest_after(after, index, ready, known)) for after in _releases(ready, window))
+
+
+def why_not_used(ready: ReadySet) -> str:
+    """Why a smaller bound is not looked for; "" if it is."""
+    window = Interference.of(ready.tasks, ready.supply).window(0, 0)
+    if window is None or not _has_too_many_releases(ready, window):
+        return ""
+    return f"its longest busy window has more than {_MOST_RELEASES} releases"
+
+
+def _has_too_many_releases(ready: ReadySet, window: Time) -> bool:
+    return sum(task.events.eta_plus(window) for task in ready.tasks) > _MOST_RELEASES
 
 
 def _releases(ready: ReadySet, window: Time) -> set[Time]:

@@ -84,6 +84,8 @@ def _improved(
     if executor.works_off_ready_sets(host.release) and not higher:
         ready = ReadySet(tasks, _is_order_known(executor, host.release), supply)
         yield improved(polling_points, ready, known)
+        if reason := busy_window_aware.why_not_used(ready):
+            releases.topics.solved.context.notes.assume(f"bounds in {executor.name!r} can be larger than necessary: {reason}")
         yield improved(busy_window_aware, ready, known)
     elif executor.kind is HostExecutorKind.STATIC and not higher and supply is FULL:
         yield _non_preemptive(tasks, {each.name: executor.rank(each, host.release) for each in executor.callbacks})

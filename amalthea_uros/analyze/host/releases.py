@@ -203,7 +203,8 @@ class HostReleases:
             # The jitter is that of the messages in the queue: the times of their publication are unknown.
             return SporadicEvents(described.interval, described.jitter)
         if not sources:
-            raise UnknownError(f"nobody that is described publishes {topic!r}; set 'rate' of the topic")
+            what = f"neither a callback of the host nor a controller with a 'transport' publishes {topic!r}"
+            raise UnknownError(f"{what}; set 'rate' of the topic if it comes from elsewhere")
         if latency.most is None:
             raise UnknownError(f"the latency of the topic {topic!r} is not specified; set 'latency' of it or of the host")
         return aggregated(tuple(delayed(each, latency.most - latency.least) for each in sources))

@@ -8,7 +8,7 @@ from typing import Any
 
 from amalthea_uros.perf.executors import Executor
 from amalthea_uros.perf.host import Host, HostExecutor, HostPolicy
-from amalthea_uros.perf.network import BILLION, MOST_LOST, Losses, Network, Recovery, Transmission
+from amalthea_uros.perf.network import BILLION, MOST_LOST, Losses, Network, Purpose, Recovery, Transmission
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.perf.system import System
 
@@ -54,6 +54,14 @@ def flaw_of_transmission(transmission: Transmission, network: Network, system: S
     """Why a transmission of a file does not belong to a system; None if it does."""
     wires = {wire.name for wire in network.wires}
     return _missing("wire", [transmission.wire], wires) or _missing("process", transmission.processes, system.processes)
+
+
+def has_old_topic(transmission: Transmission) -> bool:
+    """Whether a message of a service has the name of that as its topic, as in models of older builds; its own name shows what it is."""
+    topic, name = transmission.topic, transmission.name
+    if not topic or transmission.purpose is not Purpose.DATA or f"{topic}_topic_" in name:
+        return False
+    return any(f"{topic}_{kind}_" in name and not topic.endswith(f"/{kind}") for kind in ("request", "response"))
 
 
 def _missing(kind: str, names: Iterable[str], known: Any) -> str | None:

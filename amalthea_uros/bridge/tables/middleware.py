@@ -19,6 +19,7 @@ from amalthea_uros.bridge.basics.middleware_flaws import (
     flaw_of_host,
     flaw_of_network,
     flaw_of_transmission,
+    has_old_topic,
     with_unknown_activation,
 )
 from amalthea_uros.errors import UnknownError
@@ -89,11 +90,19 @@ def extract_network(models: Iterable[am.SWModel], tasks: Iterable[am.Task], syst
     transmissions = _extracted(
         tasks,
         _TRANSMISSION,
-        lambda task, text: from_text(Transmission, text, name=context.names[task], origin=partial(context.location, task)),
+        partial(_transmission, context),
         lambda each: flaw_of_transmission(each, network, system),
         context,
     )
     return replace(network, transmissions=tuple(map(_with_acknowledged, transmissions)))
+
+
+def _transmission(context: Extracting, task: Element, text: str) -> Transmission:
+    found = from_text(Transmission, text, name=context.names[task], origin=partial(context.location, task))
+    if has_old_topic(found):
+        message = f"the message {found.name!r} has the topic {found.topic!r}, which no longer is that of requests and responses"
+        context.note("EXT006", message, task)
+    return found
 
 
 def extract_host(models: Iterable[am.SWModel], context: Extracting) -> Host:

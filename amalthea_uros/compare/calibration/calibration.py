@@ -20,7 +20,7 @@ from amalthea_uros.compare.calibration.periods import calibrated_periods
 from amalthea_uros.compare.calibration.samples import Measured
 from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.compare.calibration.wire_parts import executed_times
-from amalthea_uros.design.description import text_edits
+from amalthea_uros.design.description import other_folder, text_edits
 from amalthea_uros.design.description.assign import apply_assignments
 from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -66,14 +66,14 @@ class Calibration(Shown):
         return any(finding.severity is Severity.ERROR for finding in self.findings)
 
     def write(self, path: StrPath) -> None:
-        """Write the calibrated description, whole or not at all.
+        """Write the calibrated description, whole or not at all; in another folder, it names the same files.
 
         Raises
         ------
         WriteError : the file cannot be written.
         """
         try:
-            write_bytes(Path(path), self.text.encode())
+            write_bytes(Path(path), other_folder.moved(self.text, self.path, Path(path)).encode())
         except FileError as error:
             finding = Finding("XMI101", Severity.ERROR, error.reason, Location(error.path), error.advice)
             raise WriteError([finding]) from None

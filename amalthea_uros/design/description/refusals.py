@@ -57,7 +57,7 @@ def refusal(
     advice = did_you_mean(change.object, names) or (f"{change.key!r} is a key of {listed(holders)}" if holders else "")
     if change.object and not advice:
         return reason
-    advice = advice or str(reason)
+    advice = advice or (str(reason) if change.object else "no object has this key; name a value as in OBJECT.KEY=VALUE")
     return InvalidArgumentError(f"unknown object {change.object!r}; {advice}" if change.object else f"{unstated}; {advice}")
 
 

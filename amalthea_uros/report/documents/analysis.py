@@ -60,8 +60,8 @@ def analysis_document(result: AnalysisResult) -> ResultDocument:
         (
             *_first_answer(result),
             *_message_chains(result),
-            section("Load", _loads(cores_of(analysis), "core")),
-            section("Utilisation of wires", _loads(wires_of(analysis), "wire")),
+            section("Load", _loads(cores_of(analysis), "core", analysis)),
+            section("Utilisation of wires", _loads(wires_of(analysis), "wire", analysis)),
             *overload_sections(analysis),
             section("Response times", response_times(analysis)),
             section(NEEDS_HEADING, execution_times(analysis)),
@@ -135,8 +135,9 @@ def wires_of(analysis: Analysis) -> list[ProcessorResult]:
     return [each for each in analysis.processors if each.worst != 0 and each.name not in cores]
 
 
-def _loads(processors: Sequence[ProcessorResult], kind: str) -> Table:
-    rows = [(*load_cells(processor), _bar(processor)) for processor in processors]
+def _loads(processors: Sequence[ProcessorResult], kind: str, analysis: Analysis) -> Table:
+    network = analysis.solution.context.system.network
+    rows = [(*load_cells(processor, network), _bar(processor)) for processor in processors]
     clock = "clock" if kind == "core" else "bit rate"
     return table(f"Load of each {kind}", (kind, f"~>{clock}", "~~>best", "~~>mean", ">worst", "~~~"), rows)
 

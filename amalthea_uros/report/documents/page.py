@@ -156,7 +156,8 @@ def _load_section(content: ReportContent) -> Section | None:
 def _row_of_loads(core: ProcessorResult, content: ReportContent) -> tuple[Cell, ...]:
     simulation = content.simulation.simulation if content.simulation is not None else None
     observed = simulation.cores[core.name].load if simulation is not None else None
-    return (*load_cells(core), "-" if observed is None else load_text(observed), _remark(core))
+    network = content.analysis.solution.context.system.network
+    return (*load_cells(core, network), "-" if observed is None else load_text(observed), _remark(core))
 
 
 def _remark(core: ProcessorResult) -> Cell:

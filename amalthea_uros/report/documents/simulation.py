@@ -112,10 +112,12 @@ def _failure(item: Judged) -> str:
             return f"{what}: {item.reason}"
         reason = f" ({item.reason})" if item.reason else ""
         return f"{what} is {value_text(item, item.value)}{reason}, limit {limit_text(item)}"
-    if item.reason or item.response_time is None:
+    is_late = item.response_time is not None and item.deadline is not None and item.response_time.max > item.deadline
+    if item.response_time is None or (item.reason and not is_late):
         return f"{item.name}: {item.reason}"
     kind = "period" if item.is_implicit else "deadline"
-    return f"{item.name} responds after {time_text(round(item.response_time.max))}, {kind} {time_text(item.deadline or 0)}"
+    late = f"{item.name} responds after {time_text(round(item.response_time.max))}, {kind} {time_text(item.deadline or 0)}"
+    return f"{late}; {item.reason}" if item.reason else late
 
 
 def _not_observed(simulation: Simulation) -> str:

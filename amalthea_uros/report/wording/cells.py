@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import inf
+from math import ceil, inf
 from typing import TYPE_CHECKING
 
 from amalthea_uros.analyze.results.processes import ProcessorResult, ProcessResult, RequirementResult
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import ObservedVerdict, Verdict
+from amalthea_uros.perf.network import Network, WireKind
 from amalthea_uros.perf.stimuli import (
     ArrivalCurve,
     Burst,
@@ -24,7 +25,17 @@ from amalthea_uros.perf.stimuli import (
 )
 from amalthea_uros.report.basics.document import Badge, Tone
 from amalthea_uros.timing.response import Response
-from amalthea_uros.units import Frequency, Rounding, Time, frequency_text, number_text, rounded, rounded_time_text, time_text
+from amalthea_uros.units import (
+    Frequency,
+    Rounding,
+    Time,
+    bit_rate_text,
+    frequency_text,
+    number_text,
+    rounded,
+    rounded_time_text,
+    time_text,
+)
 
 if TYPE_CHECKING:
     from amalthea_uros.simulate.observations import MetricObservation
@@ -97,16 +108,26 @@ def load_text(load: Fraction | None, rounding: Rounding = Rounding.NEAREST) -> s
     return UNKNOWN if load is None else f"{number_text(rounded(load * 100, rounding, 100))} %"
 
 
-def load_cells(core: ProcessorResult) -> tuple[str, ...]:
-    """The name and the clock of a core, and its best, mean and worst load; of an unknown one the part that is known."""
+def load_cells(core: ProcessorResult, network: Network) -> tuple[str, ...]:
+    """The name of a core or wire, its clock or bit rate, and its best, mean and worst load as far as they are known."""
     is_partly_known = core.worst is None and core.at_least
     return (
         core.name,
-        frequency_text(core.frequency) if core.frequency else UNKNOWN,
+        _clock_or_bit_rate(core, network),
         load_text(core.best, Rounding.DOWN),
         load_text(core.mean),
         f"at least {load_text(core.at_least, Rounding.DOWN)}" if is_partly_known else load_text(core.worst, Rounding.UP),
     )
+
+
+def _clock_or_bit_rate(core: ProcessorResult, network: Network) -> str:
+    """A wire with a table of times has no bit rate: its clock only counts nanoseconds."""
+    kind = next((wire.kind for wire in network.wires if core.name in wire.cores), None)
+    if kind is WireKind.CUSTOM:
+        return "-"
+    if not core.frequency:
+        return UNKNOWN
+    return frequency_text(core.frequency) if kind is None else bit_rate_text(int(core.frequency))
 
 
 def limited_text(quantity: str, of: str) -> str:
@@ -121,15 +142,20 @@ def directed_limit(limit: str, *, is_upper: bool) -> str:
 
 def clock_text(least: Frequency) -> str:
     """The clock that something needs at least, rounded up to four significant digits."""
+    return frequency_text(_rounded_up(least))
+
+
+def _rounded_up(least: Frequency) -> Frequency:
     size = 10 ** max(0, len(str(int(least))) - 4)
-    return frequency_text(rounded(least / size, Rounding.UP) * size)
+    return Fraction(rounded(least / size, Rounding.UP) * size)
 
 
 def relief(core: ProcessorResult, *, is_wire: bool = False) -> str:
     """The least demand of an overloaded core or wire: shorter times, or a faster clock; to meet limits it can take more."""
     load = core.at_least
     if is_wire:
-        rate = "a higher bit rate" if core.frequency is None else f"at least {clock_text(core.frequency * load)} as bit rate"
+        least = None if core.frequency is None else bit_rate_text(ceil(_rounded_up(core.frequency * load)))
+        rate = "a higher bit rate" if least is None else f"at least {least} as bit rate"
         return f"{rate}, or fewer or smaller messages"
     clock = "a faster clock" if core.frequency is None else f"a clock of at least {clock_text(core.frequency * load)}"
     return f"execution times of at most {load_text(1 / load, Rounding.UP)} of these, {clock}, or processes on another core"

@@ -65,7 +65,8 @@ def headline(chain: ChainResult) -> str:
     """The latency of a chain in a sentence."""
     latency, best = f"Worst latency from {chain.start} to {chain.end}", at_least(chain.best)
     if chain.worst is None:
-        return f"{latency}: unknown, at least {best}; {remark(chain)}"
+        least = "" if chain.best is None else f", at least {best}"
+        return f"{latency}: unknown{least}; {remark(chain)}"
     return f"{latency}: {at_most(chain.worst)} (bound), best {best}; {remark(chain)}"
 
 

@@ -142,7 +142,7 @@ def _obstacles(system: System) -> Iterator[str]:
                 continue
             is_described = topic in published or bool(sent_to_host(system, topic))
             if not is_described and (topic not in topics or not topics[topic].interval):
-                yield f"nobody that is described publishes {topic!r}"
+                yield f"neither a callback of the host nor a controller with a 'transport' publishes {topic!r}"
             if is_described and topics[topic].latency.most is None:
                 yield f"the latency of the topic {topic!r} is not specified"
         yield from _obstacles_to_controllers(executor, host, system)

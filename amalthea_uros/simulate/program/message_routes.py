@@ -93,6 +93,10 @@ class MessageRoutes:
             raise UnknownError("its events can occur in several places; set the process of each event")
         if not whole:
             gap = candidates[0][1].index(None)
+            message = self._transmission(events[gap])
+            is_received = message is not None and message.direction is Direction.TO_CONTROLLER
+            if message is not None and is_received and taker(message, self.context.system) is None:
+                raise UnknownError(f"{message.callback!r} takes {message.topic!r} outside of an executor with a loop")
             raise UnknownError(f"nothing takes the effect from {events[gap].name!r} to {events[gap + 1].name!r}")
         occurrences, links = whole[0]
         return Route(tuple(event.name for event in events), occurrences, tuple(link for link in links if link is not None))

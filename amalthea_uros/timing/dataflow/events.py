@@ -39,6 +39,7 @@ from amalthea_uros.perf.events import (
     SemaphoreEvent,
     StimulusEvent,
 )
+from amalthea_uros.perf.network import OFF_WIRE_EVENT
 from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.jobs.counters import CallSites
@@ -178,6 +179,9 @@ class EventLocator:
         found = list(self._occurrences(event))
         if not found and (callback := self.system.callback_of_host_event.get(event.name)) is not None:
             raise UnknownError(f"{callback.name!r} is a callback of the host")
+        if not found and isinstance(event, CustomEvent) and event.kind == OFF_WIRE_EVENT:
+            advice = "describe 'transport' and 'agent' of the middleware"
+            raise UnraisedError(f"no wire is described for {event.name!r}: {advice}")
         if not found:
             raise UnraisedError(f"no activity in the model raises the event {event.name!r}")
         return found

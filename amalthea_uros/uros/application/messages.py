@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.perf.network import Direction, request_topic, response_topic
+from amalthea_uros.perf.network import ActionPart, Direction, request_topic, response_topic
 from amalthea_uros.spec.application import (
     ActionClient,
     ActionServer,
@@ -128,10 +128,14 @@ def incoming_message(section: CallbackSection, interval: Time) -> Message | None
         case Subscription(topic=topic, message_size=size):
             kind, reliable = MessageKind.DELIVERY, section.reliability == "reliable"
             interval -= section.jitter or 0
-        case ServiceSection(name=topic, request_size=size) | ActionServer(name=topic, goal_size=size):
+        case ServiceSection(name=topic, request_size=size):
             kind = MessageKind.REQUEST_IN
-        case Client(service=topic, response_size=size) | ActionClient(action=topic, result_size=size):
+        case Client(service=topic, response_size=size):
             kind = MessageKind.RESPONSE_IN
+        case ActionServer(name=action, goal_size=size):
+            kind, topic = MessageKind.REQUEST_IN, ActionPart.GOALS.of(action)
+        case ActionClient(action=action, result_size=size):
+            kind, topic = MessageKind.RESPONSE_IN, ActionPart.RESULTS.of(action)
         case _:
             return None
     return Message(
@@ -213,11 +217,14 @@ def outgoing_messages(
         match clients.get(name):
             case None:
                 notes.undefined("client", name, clients, section.location("requests", index), owner=owner)
-            case Client(service=topic, request_size=size) | ActionClient(action=topic, goal_size=size) as client:
+            case Client(service=topic, request_size=size) as client:
                 yield message(MessageKind.REQUEST_OUT, topic, size, client.location())
+            case ActionClient(action=action, goal_size=size) as client:
+                yield message(MessageKind.REQUEST_OUT, ActionPart.GOALS.of(action), size, client.location())
     match section:
         case ServiceSection():
             yield message(MessageKind.RESPONSE_OUT, section.name, section.response_size, section.location())
         case ActionServer():
-            yield message(MessageKind.PUBLICATION, section.name, section.feedback_size, section.location())
-            yield message(MessageKind.RESPONSE_OUT, section.name, section.result_size, section.location())
+            feedback, results = ActionPart.FEEDBACK.of(section.name), ActionPart.RESULTS.of(section.name)
+            yield message(MessageKind.PUBLICATION, feedback, section.feedback_size, section.location())
+            yield message(MessageKind.RESPONSE_OUT, results, section.result_size, section.location())

@@ -39,6 +39,7 @@ class AssemblyContext:
     channels : by name, of the messages that the application sends and receives itself
     executors : that spin in loops
     assumptions : about measured times in the description, in sentences
+    is_part : whether it describes a controller of a robot
     """
 
     description: Description
@@ -53,6 +54,7 @@ class AssemblyContext:
     executors: list[Executor] = field(default_factory=list)
     host: Host = field(default_factory=Host)
     assumptions: tuple[str, ...] = ()
+    is_part: bool = False
 
     @property
     def converter(self) -> DemandConverter:

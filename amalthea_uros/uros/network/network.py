@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.network import Direction, Losses
 from amalthea_uros.perf.system import System
+from amalthea_uros.spec.application import Application
 from amalthea_uros.spec.losses import LossesSection
 from amalthea_uros.spec.transports import Can, CanFd
 from amalthea_uros.uros.application.callbacks import Callback
@@ -52,7 +53,7 @@ def planned_network(
     description = context.description
     check_transport(description, context.notes)
     line = context.line
-    if line is None or not is_in_system(description):
+    if line is None or not (context.is_part or is_in_system(description)):
         return None
     messages = tuple(wire_messages(callbacks, context.profile))
     check_lengths(messages, line, context.notes)
@@ -105,5 +106,16 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
     )
     check_load(plan, context.notes)
     check_reading(plan, system.executors, context.notes)
-    found = with_wire(system, plan, middleware.agent.name, (*context.assumptions, *plan.assumptions))
+    left_out = _not_on_wire(context.description.application, plan.name)
+    found = with_wire(system, plan, middleware.agent.name, (*context.assumptions, *plan.assumptions, *left_out))
     return without_idle(found, planned.receivers.other_triggers)
+
+
+def _not_on_wire(application: Application, wire: str) -> Iterator[str]:
+    """What the middleware sends besides the messages whose sizes are described."""
+    nodes = application.nodes
+    if any(node.action_servers or node.action_clients for node in nodes):
+        more = "acceptances and cancellations of goals, requests for results and the status"
+        yield f"of actions, {wire!r} carries goals, results and the feedback of servers; {more} need no time on it"
+    if any(node.parameter_server or node.lifecycle for node in nodes):
+        yield f"requests to parameter servers and lifecycle nodes, and their responses, need no time on {wire!r}"

@@ -30,8 +30,8 @@ def line_of(description: Description) -> Line | None:
 def is_in_system(description: Description) -> bool:
     """Whether the wire is a part of the system.
 
-    A classic CAN bus is one only where something asks for it: an executor that loops, a latency of the agent, foreign frames, or a
-    chain with a topic.
+    A classic CAN bus is one only where something asks for it: an executor that loops, a latency of the agent, foreign frames, a
+    host, or a chain with a topic.
     """
     middleware = description.middleware
     can = middleware.transport.can
@@ -42,6 +42,7 @@ def is_in_system(description: Description) -> bool:
         any(executor.loop is not None for executor in (middleware.executor, *middleware.executors))
         or any(latency is not None for latency in (agent.to_controller, agent.to_host, agent.acknowledgement))
         or bool(can.foreign or can.dbc)
+        or description.host is not None
         or _has_chain_with_topic(description)
     )
 

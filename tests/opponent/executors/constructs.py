@@ -61,6 +61,8 @@ def _of_messages(content: Section) -> Iterator[str]:
         "guard_conditions": "guard condition",
         "services": "service",
         "clients": "client",
+        "action_servers": "action server",
+        "action_clients": "action client",
     }
     for plural, name in names.items():
         for section in node.get(plural, ()):

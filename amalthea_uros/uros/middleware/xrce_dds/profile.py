@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.perf.executors import HandleKind
-from amalthea_uros.perf.network import Direction, Recovery
+from amalthea_uros.perf.network import ActionPart, Direction, Recovery
 from amalthea_uros.spec.application import Application, NodeSection
 from amalthea_uros.spec.middleware import Middleware
 from amalthea_uros.units import MILLISECOND, Time
@@ -267,7 +267,7 @@ def _sends_reliably(node: NodeSection) -> bool:
 
 
 def _names(application: Application) -> list[str]:
-    """The names of topics and services; an action has several with the suffixes of ros2/rcl rcl_action/src/rcl_action/names.c."""
+    """The names of topics and services, of those of an action the longest."""
     found: list[str] = []
     for node in application.nodes:
         found += [subscription.topic for subscription in node.subscriptions]
@@ -275,7 +275,7 @@ def _names(application: Application) -> list[str]:
         found += [service.name for service in node.services]
         found += [client.service for client in node.clients]
         actions = [*(server.name for server in node.action_servers), *(client.action for client in node.action_clients)]
-        found += [f"{name}/_action/cancel_goal" for name in actions]
+        found += map(ActionPart.CANCELLING.of, actions)
         if node.parameter_server is not None:
             found.append(f"{node.name}/set_parameters_atomically")
         if node.lifecycle is not None:
