@@ -22,6 +22,7 @@ from amalthea_uros.uros.chain_members import members_together
 from amalthea_uros.uros.demands import with_demands
 from amalthea_uros.uros.host import host_of
 from amalthea_uros.uros.memory import MemoryDemand
+from amalthea_uros.uros.missing_wires import check_wires
 from amalthea_uros.uros.profiles import stated_profile
 from amalthea_uros.uros.stacks import separate_stacks
 from amalthea_uros.uros.transports.line import span_of
@@ -47,6 +48,7 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
     _check_names(system, description, problems)
     system = replace(system, host=_host(description, controllers, system, problems))
     members = members_together((each.members.of_part(name) for name, each in controllers.items()), system.network)
+    check_wires(members, system, problems)
     system = with_demands(system, members, description, problems)
     if problems.has_errors:
         raise problems.refusal()

@@ -20,6 +20,7 @@ from amalthea_uros.uros.chain_members import ChainMembers, Topics, chain_element
 from amalthea_uros.uros.demands import with_demands
 from amalthea_uros.uros.executors.activation import with_triggered_iterations
 from amalthea_uros.uros.executors.handles import deadlines
+from amalthea_uros.uros.missing_wires import check_wires
 from amalthea_uros.uros.network.network import PlannedNetwork, with_network
 from amalthea_uros.uros.os import check_shared_priorities, isr_allocations, os_of, task_allocations
 from amalthea_uros.uros.transports.messages import waits_outside
@@ -46,6 +47,7 @@ def assembled_system(
     system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     members = ChainMembers(elements, Topics.of(callbacks, system.network))
+    check_wires(members, system, notes)
     system = with_demands(system, members, description, notes)
     demanded = (*system.constraints.requirements, *deadlines(context.executors, callbacks))
     return AssembledSystem(replace(system, constraints=replace(system.constraints, requirements=demanded)), members)

@@ -117,6 +117,6 @@ def test_no_paths_and_no_changes():
 
 def test_a_description_is_assembled_once(monkeypatch):
     assembled, assemble = [], described.assemble
-    monkeypatch.setattr(described, "assemble", lambda *parts: assembled.append(parts) or assemble(*parts))
+    monkeypatch.setattr(described, "assemble", lambda *parts, **how: assembled.append(parts) or assemble(*parts, **how))
     analyze_files(YAML, with_missing=True)
     assert len(assembled) == 1

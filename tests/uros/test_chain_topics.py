@@ -19,8 +19,8 @@ application:
     - name: node
       subscriptions:
         - {{name: drive, topic: cmd_vel, rate: 4 Hz, message_size: 48 B, execution_time: 100 us, writes: [speed], publishes: [odom]}}
-        - {{name: on_odom, topic: odom, rate: 4 Hz, jitter: 10 ms, message_size: 4 B, execution_time: 100 us}}
-        - {{name: log, topic: odom, rate: 4 Hz, jitter: 10 ms, message_size: 4 B, execution_time: 100 us}}
+        - {{name: on_odom, topic: {own}, rate: 4 Hz, jitter: 10 ms, message_size: 4 B, execution_time: 100 us}}
+        - {{name: log, topic: {own}, rate: 4 Hz, jitter: 10 ms, message_size: 4 B, execution_time: 100 us}}
         - {{name: stop, topic: halt, rate: 1 Hz, message_size: 4 B, execution_time: 100 us, {stop}}}
       publishers: [{{topic: odom, message_size: 4 B, reliability: best-effort}}]
 tasks:
@@ -36,8 +36,8 @@ LOOP, PERIODIC, SERIAL = "loop: {spin_some: 100 ms, sleep: 10 ms}", "period: 1 m
 def app(author):
     """Describes the application with a path."""
 
-    def described(path, executor=LOOP, transport=SERIAL, stop="writes: [stopped]"):
-        return author.describe(TEXT.format(path=path, executor=executor, transport=transport, stop=stop))
+    def described(path, executor=LOOP, transport=SERIAL, stop="writes: [stopped]", own="odom"):
+        return author.describe(TEXT.format(path=path, executor=executor, transport=transport, stop=stop, own=own))
 
     return described
 
@@ -104,7 +104,7 @@ def test_an_executor_without_a_loop_looks_for_messages_in_each_job(app):
 
 
 def test_without_a_transport_the_latency_is_unknown(app):
-    described = app("/cmd_vel, drive, speed, pwm", transport="")
+    described = app("/cmd_vel, drive, speed, pwm", transport="", own="pose")
     assert [(each.rule, each.location.line) for each in described.findings if each.rule.startswith("CHN")] == [("CHN010", 21)]
     assert isinstance(events_of(described)[0], CustomEvent)
     assert "describe 'transport'" in analyze_system(described.system).chains["way"].reason
@@ -122,5 +122,15 @@ def test_without_a_transport_the_latency_is_unknown(app):
     ],
 )
 def test_a_topic_that_is_out_of_place(author, path, rule, message):
-    text = TEXT.format(path=path, executor=LOOP, transport=SERIAL, stop="writes: [stopped]")
+    text = TEXT.format(path=path, executor=LOOP, transport=SERIAL, stop="writes: [stopped]", own="odom")
     assert (21, rule, message) in author.findings(text)
+
+
+def test_own_messages_without_a_transport_are_refused(author):
+    # Stated are 4 Hz: nothing says that the messages of `drive` come so, and how late.
+    text = TEXT.format(path="/cmd_vel, drive", executor=LOOP, transport="", stop="writes: [stopped]", own="odom")
+    refused = [message for _, rule, message in author.findings(text) if rule == "APP003"]
+    assert refused == [
+        f"'{name}' receives 'odom', which is published here, too, but no wire is described on which it comes"
+        for name in ("on_odom", "log")
+    ]

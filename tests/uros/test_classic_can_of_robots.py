@@ -40,6 +40,8 @@ chains:
   - {name: shown, path: [a_Send, /speed, Show], reaction: 100 ms}
 """
 WITHOUT_TRANSPORT = ROBOT.replace("      transport: {can: {bitrate: 250 kbit/s}}\n", "")
+#: In which nothing described sends to a controller.
+SENDING_ONLY = WITHOUT_TRANSPORT.replace("Receive, topic: speed", "Receive, topic: wish").replace("/speed, b_Receive", "/speed")
 
 
 def messages(result):
@@ -72,8 +74,23 @@ def test_with_it_the_chain_to_the_host_has_a_bound():
 
 @pytest.mark.parametrize("run", [amuros.analyze, lambda text: amuros.simulate(text, "1 s")], ids=["analyze", "simulate"])
 def test_without_a_transport_this_is_missing(run):
-    said = messages(run(WITHOUT_TRANSPORT))
+    said = messages(run(SENDING_ONLY))
     assert "no transport is described for 'a_Send'" in said
     assert "no wire is described for 'speed_sent_by_a_Send'" in said
     assert "neither a callback of the host nor a controller with a 'transport' publishes 'speed'" in said
     assert "no activity" not in said
+
+
+def test_without_a_transport_nothing_is_known_of_what_controllers_send_each_other():
+    with pytest.raises(amuros.ReadError, match="'b_Receive' receives 'speed', which is published here, too, but no wire"):
+        describe_text(WITHOUT_TRANSPORT)
+
+
+def test_a_bus_is_one_if_its_controller_receives_what_it_publishes():
+    _, _, rest = ROBOT.partition("controllers:\n")
+    first = rest.partition("  - name: b")[0].replace("  - name: a\n", "").replace("\n    ", "\n").removeprefix("    ")
+    text = f"amuros: 1\nname: own\n{first}"
+    own = "subscriptions: [{name: Own, topic: /speed, rate: 100 Hz, message_size: 4 B, execution_time: 2 us}]\n"
+    assert not describe_text(text).assembly.system.network.wires
+    (wire,) = describe_text(text.replace("      publishers:", f"      {own}      publishers:")).assembly.system.network.wires
+    assert wire.name == "CAN"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from amalthea_uros.perf.network import plain_topic
 from amalthea_uros.spec.application import NodeSection
 from amalthea_uros.spec.description import Description
 from amalthea_uros.spec.transports import Can, CanFd
@@ -31,7 +32,7 @@ def is_in_system(description: Description) -> bool:
     """Whether the wire is a part of the system.
 
     A classic CAN bus is one only where something asks for it: an executor that loops, a latency of the agent, foreign frames, a
-    host, or a chain with a topic.
+    host, a chain with a topic, or a topic that the controller both publishes and receives.
     """
     middleware = description.middleware
     can = middleware.transport.can
@@ -44,7 +45,19 @@ def is_in_system(description: Description) -> bool:
         or bool(can.foreign or can.dbc)
         or description.host is not None
         or _has_chain_with_topic(description)
+        or _receives_own(description)
     )
+
+
+def _receives_own(description: Description) -> bool:
+    """Whether a controller receives topics that it publishes, or calls its own services."""
+    nodes = description.application.nodes
+    received = {subscription.topic for node in nodes for subscription in node.subscriptions}
+    received |= {service.name for node in nodes for service in (*node.services, *node.action_servers)}
+    sent = {publisher.topic for node in nodes for publisher in node.publishers}
+    sent |= {client.service for node in nodes for client in node.clients}
+    sent |= {client.action for node in nodes for client in node.action_clients}
+    return not {*map(plain_topic, received)}.isdisjoint(map(plain_topic, sent))
 
 
 def _has_chain_with_topic(description: Description) -> bool:
