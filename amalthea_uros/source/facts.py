@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from enum import StrEnum
 from fractions import Fraction
 
@@ -240,13 +241,18 @@ class CodeExecutor:
     variable: str
     place: Location
     max_handles: int | None
-    handles: list[CodeHandle] = field(default_factory=list)
+    handle_by_entity: dict[tuple[CodeEntityKind, str], CodeHandle] = field(default_factory=dict)
     timeout: Time | None = None
     timeout_place: Location | None = None
     trigger: CodeTrigger | None = None
     semantics: str = "ROS"
     spins: list[Spin] = field(default_factory=list)
     thread: Thread | None = None
+
+    @property
+    def handles(self) -> Collection[CodeHandle]:
+        """What was added to it, in order."""
+        return self.handle_by_entity.values()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ from amalthea_uros.diagnostics import Location
 from amalthea_uros.source.entities import CREATIONS
 from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
 from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind
-from amalthea_uros.source.locks import held_at, is_lock
+from amalthea_uros.source.locks import ReleasedLocks, held_at_all
 from amalthea_uros.source.ports import MILLISECOND
 from amalthea_uros.source.sleeps import SLEEPS, WaitCall, wait_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall, Mark
@@ -126,8 +127,7 @@ def session_users(facts: CodeFacts, walk: CodeWalk) -> dict[str, list[FunctionCa
 def add_lock(facts: CodeFacts, walk: CodeWalk) -> None:
     """Note a lock that every thread holds whenever it uses the session."""
     calls = [call for each in session_users(facts, walk).values() for call in each]
-    held = [held_at(call, walk.calls) for call in calls]
-    if held and set.intersection(*held):
+    if calls and held_at_all(calls, walk.calls):
         facts.lock = calls[0].place
 
 
@@ -147,13 +147,19 @@ class _LoopItems:
 
     def __init__(self, facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
         self.creations = Creations(calls)
-        self._every = [(call, item) for call in calls if (item := _item(facts, call)) is not None and not is_lock(call, calls)]
+        self._inside: dict[tuple[int, Mark | None], list[tuple[FunctionCall, CodeLoopItem]]] = defaultdict(list)
         self._found: dict[tuple[object, ...], tuple[CodeLoopItem, ...]] = {}
+        locks = ReleasedLocks(calls)
+        for call in calls:
+            if (item := _item(facts, call)) is not None and not locks.has(call):
+                for loop in (None, *dict.fromkeys(call.loops)):
+                    self._inside[id(call.root), loop].append((call, item))
 
     def around(self, user: FunctionCall) -> tuple[CodeLoopItem, ...]:
         """The items in the same loop as a call that spins or sends."""
-        used = user.argument(0)
-        key = (id(user.root), user.loops, user.conditions, None if used is None else used.key)
+        # What else a call uses makes a difference by the conditions under which that is created only.
+        created = frozenset(each.conditions for each in self.creations.of(user))
+        key = (id(user.root), user.loops, user.conditions, created)
         if key not in self._found:
             self._found[key] = tuple(self._items(user))
         return self._found[key]
@@ -161,8 +167,9 @@ class _LoopItems:
     def _items(self, user: FunctionCall) -> Iterator[CodeLoopItem]:
         """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
         created = self.creations.of(user)
-        for call, item in self._every:
-            if call.root is not user.root or call.loops[: len(user.loops)] != user.loops or call.excludes(user):
+        for call, item in self._inside[id(user.root), user.loops[-1] if user.loops else None]:
+            # A function that is called in several places has the same loop several times.
+            if call.loops[: len(user.loops)] != user.loops or call.excludes(user):
                 continue
             if is_only_at_creation(call, user, created):
                 continue
