@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.ports import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, known_ports, parameter_services
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind
@@ -212,7 +212,7 @@ def _waiting(executor: CodeExecutor) -> Iterator[Finding]:
                 "IMP010", Severity.WARNING, message, spin.place, "Call rclc_executor_set_timeout with less than the period."
             )
         is_first = not spin.items or spin.items[0].place == spin.place
-        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.sleep == 0 and is_first:
+        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.items.sleep == 0 and is_first:
             message = "the loop does not sleep; with timers only, some versions of the middleware never wait either"
             yield Finding(
                 "IMP018",
@@ -236,7 +236,7 @@ def _timeout(executor: CodeExecutor) -> Time:
 
 def _timers(executor: CodeExecutor, facts: CodeFacts) -> Iterator[Finding]:
     spin = next(iter(executor.spins), None)
-    least = None if spin is None else spin.time if spin.kind is SpinKind.PERIOD else spin.sleep
+    least = None if spin is None else spin.time if spin.kind is SpinKind.PERIOD else spin.items.sleep
     for handle in executor.handles:
         entity = facts.entities.get(handle.entity)
         if entity is not None and entity.period is not None and least is not None and entity.period < least:
@@ -252,7 +252,7 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
 
 
 def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
-    described = _in_loops(facts)
+    described = facts.described_places()
     creations = Creations(walk.calls)
     users = [(call, creations.of(call)) for call in walk.calls if call.name in (*SPINS, *SENDS) and is_repeated(call)]
     for call in walk.calls:
@@ -302,16 +302,9 @@ def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
             )
 
 
-def _in_loops(facts: CodeFacts) -> set[Location]:
-    """Where what the loops of the description have is."""
-    # Those of spins in the same loop are the same tuple.
-    loops = {id(spin.items): spin.items for executor in facts.executors.values() for spin in executor.spins}
-    return {item.place for items in (*loops.values(), *(sender.items for sender in facts.senders)) for item in items}
-
-
 def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     published = {place for places in facts.publishes.values() for place in places.values()}
-    reported, described = set(), _in_loops(facts)
+    reported, described = set(), facts.described_places()
     for call in walk.calls:
         given = call.argument(0)
         entity = facts.entities.get(given.key) if call.name in SENDS and given is not None else None

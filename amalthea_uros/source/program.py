@@ -139,6 +139,7 @@ class CodeProgram:
     values: dict[str, tuple[Node, CodeFunction | SourceFile]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     changed: set[str] = field(default_factory=set)
+    _object_numbers: dict[str, int] = field(default_factory=dict)
     _elements: dict[Node, Sequence[Node]] = field(default_factory=dict)
     _given_members: dict[tuple[Node, str], Mapping[str, Node]] = field(default_factory=dict)
 
@@ -155,15 +156,16 @@ class CodeProgram:
         return self._given_members[values, owner].get(member)
 
     def number_of_objects(self, owner: str) -> int:
-        """How many objects of a class there are, as members, too; 0 if nothing shows one."""
-        return self._number_of_objects(owner, {}, 0)
+        """How many objects of a class there are, as members, too; 0 if nothing shows one; asked for when everything is read."""
+        return self._number_of_objects(owner, 0)
 
-    def _number_of_objects(self, owner: str, known: dict[str, int], depth: int) -> int:
+    def _number_of_objects(self, owner: str, depth: int) -> int:
+        known = self._object_numbers
         if owner in known or depth > _MAX_DEPTH:
             return known.get(owner, 0)
         known[owner] = 0  # of a class in itself, which only looks so where a brace is missing
         known[owner] = sum(
-            max(1, self._number_of_objects(around, known, depth + 1)) if around else 1
+            max(1, self._number_of_objects(around, depth + 1)) if around else 1
             for around in self.objects.get(owner, {}).values()
         )
         return known[owner]

@@ -38,6 +38,8 @@ _ALLOCATIONS = re.compile(r"\w*(m|c)alloc|\w*allocate")
 #: Functions that make a text of a value.
 _TEXTS = ("String", "string", "to_string")
 _FORMAT = re.compile(r"(%(?:%|\d*(?:l|ll|h|hh|z)?[dius]))")
+#: Of the width of a conversion; no buffer of a name has room for more.
+_WIDTH_DIGITS = 3
 _COMPARISONS = {"==": eq, "!=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}
 _WRAPPERS = ("parenthesized_expression", "cast_expression", "pointer_expression")
 
@@ -303,11 +305,11 @@ class Expression:
     def _made(self, owner: str, member: str) -> Expression | None:
         """The value that the constructor of a class gives a member of an object, made with the arguments of this expression."""
         constructors, given = self.program.constructors.get(owner, ()), self.program.constructed.get(owner, {}).get(member)
-        # Where they are unknown, what does not depend on them is known all the same.
-        arguments = arguments_of(self.node)
         if len(constructors) != 1 or given is None or self.depth > _MAX_DEPTH:
             return None
         constructor = constructors[0]
+        # Where they are unknown, what does not depend on them is known all the same.
+        arguments = arguments_of(self.node)
         bindings: dict[str, Binding] = dict(zip(constructor.parameters, map(self.at, arguments), strict=False))
         is_object = self.program.classes.get(member) in self.program.members
         if given.type in ("argument_list", "initializer_list") and given.named_child_count == 1 and not is_object:
@@ -472,7 +474,9 @@ def _formatted(part: str, values: Iterator[str | None]) -> str | None:
     if part == "%%":
         return "%"
     value, width = next(values, None), part[1:].rstrip("diuslhz")
-    return value.rjust(int(width or 0), "0" if width.startswith("0") else " ") if value is not None else None
+    if value is None or len(width) > _WIDTH_DIGITS:
+        return None
+    return value.rjust(int(width or 0), "0" if width.startswith("0") else " ")
 
 
 def _calculated(first: int, operator: str, second: int) -> int | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from amalthea_uros._internal.limits import SOURCE_NODES
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.source.callees import Callees
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.intervals import interval_of, interval_of_macro
 from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of, function_of_macro
@@ -139,6 +140,7 @@ class CodeWalk:
         self._names = names
         self._started: list[CodeFunction] = []
         self._relevant = relevant_functions(program, names)
+        self._callees = Callees(program.every_function())
         self._followed = set(self._relevant.functions)
 
     def all(self) -> None:
@@ -148,6 +150,7 @@ class CodeWalk:
         inactive = {path: TextSpans(spans) for path, spans in self.inactive.items()}
         for group in self.program.functions.values():
             group[:] = [each for each in group if each.body.start_byte not in inactive.get(str(each.file.path), ())]
+        self._callees = Callees(self.program.every_function())
         entries = dict.fromkeys(self._thread_entries())
         for function in self.program.every_function():
             is_entry = not function.owner and function.name in ENTRIES
@@ -426,19 +429,8 @@ class CodeWalk:
             self._expression(given, context).owner if given is not None else name.rpartition("::")[0].rpartition("::")[2]
         )
         short = name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
-        found = self.program.functions.get(short, [])
-        owner = context.function.owner if context.function is not None else ""
-        for close in (
-            [each for each in found if each.owner and each.owner == called_class],
-            [each for each in found if each.owner and each.owner == owner and given is None],
-            [each for each in found if each.file is context.file],
-            found,
-        ):
-            if len(close) > 1:
-                close = [each for each in close if len(each.parameters) == number]
-            if len(close) == 1:
-                return close[0]
-        return None
+        own_class = context.function.owner if context.function is not None and given is None else ""
+        return self._callees.of(short, number, (called_class, own_class), context.file)
 
     def _holder(self, node: Node, callee: CodeFunction, context: _WalkPosition) -> Binding | None:
         """The object whose method a call calls; within a method of the same class, that of the method."""
