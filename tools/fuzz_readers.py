@@ -55,7 +55,7 @@ from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
 
 #: Of processor time, so that it does not matter what else the computer does.
-_SECONDS = 5
+_SECONDS = 10
 #: Files of text whose structure is known.
 _STRUCTURED = (".amxmi", ".iprx", ".yaml", ".yml", ".c", ".cpp", ".ino", ".dbc", ".idl", ".msg", ".meta")
 _GENTLE = 0.6
