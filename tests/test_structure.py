@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1158,
     "_version": 1,
     "am": 2,
-    "analyze": 9246,
+    "analyze": 9247,
     "bridge": 2876,
     "cli": 2613,
     "compare": 3833,
