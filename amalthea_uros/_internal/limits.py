@@ -59,3 +59,5 @@ CAMPAIGN_VALUES = _FACTOR * 20_000_000
 WAITING_NUMBERS = _FACTOR * 2**24
 #: Nodes of syntax trees that are visited, those of a function once for each of its calls.
 SOURCE_NODES = _FACTOR * 500_000
+#: Items of loops of source code, those of a loop once for each condition under which something is in it.
+SOURCE_LOOP_ITEMS = _FACTOR * 1_000_000

@@ -11,11 +11,12 @@ import sys
 from pathlib import Path
 from string import hexdigits
 
-from amalthea_uros._internal.files import is_file, read_text
+from amalthea_uros._internal.files import FileError, is_file, read_text
 from amalthea_uros._internal.limits import SETTINGS_SIZE
-from amalthea_uros.errors import InvalidArgumentError
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.inchron.facts import VERSION
-from amalthea_uros.services.files import save_text
+from amalthea_uros.services.files import save_new
 
 _SECTION, _GROUP = "[ModelImporter]", "AmaltheaImporter\\"
 #: Files for output, the first input and the others are inserted there.
@@ -48,12 +49,15 @@ def register(command: Path) -> Path:
     Raises
     ------
     InvalidArgumentError : the settings are no file here.
-    WriteError : the file cannot be written.
+    WriteError : the file cannot be read or written.
     """
     path = settings_file()
-    before = read_text(path, SETTINGS_SIZE).splitlines() if is_file(path) else []
-    path.parent.mkdir(parents=True, exist_ok=True)
-    save_text(path, "\n".join([*_with_entry(before, _entry(command)), ""]))
+    try:
+        before = read_text(path, SETTINGS_SIZE).splitlines() if is_file(path) else []
+    except FileError as error:
+        message = f"the settings cannot be changed: {error.reason}"
+        raise WriteError([Finding("XMI101", Severity.ERROR, message, Location(path), error.advice)]) from None
+    save_new({path: "\n".join([*_with_entry(before, _entry(command)), ""])}, force=True)
     return path
 
 

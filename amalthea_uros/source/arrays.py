@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from amalthea_uros.source.syntax import descendants, text_of
@@ -57,17 +58,16 @@ def elements_of(values: Node) -> list[Node]:
     return elements
 
 
-def member_of(values: Node, member: str, order: tuple[str, ...]) -> Node | None:
-    """The value that a list gives a member of a structure, by its name or by its position; None if it gives it none."""
+def members_of(values: Node, order: Sequence[str]) -> Mapping[str, Node]:
+    """The values that a list gives the members of a structure, by their names, or by their positions in the structure."""
     elements = [child for child in values.named_children if child.type != "comment"]
+    found: dict[str, Node] = {}
     for pair in elements:
         designator, value = pair.child_by_field_name("designator"), pair.child_by_field_name("value")
-        if pair.type == "initializer_pair" and designator is not None and text_of(designator).lstrip(".") == member:
-            return value
-    if member in order and all(each.type != "initializer_pair" for each in elements):
-        position = order.index(member)
-        return elements[position] if position < len(elements) else None
-    return None
+        if pair.type == "initializer_pair" and designator is not None and value is not None:
+            found.setdefault(text_of(designator).lstrip("."), value)
+    is_by_name = any(each.type == "initializer_pair" for each in elements)
+    return found if is_by_name else dict(zip(order, elements, strict=False))
 
 
 def counted_array(node: Node) -> Node | None:

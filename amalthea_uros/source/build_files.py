@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
+from typing import TypeAlias
 
 from amalthea_uros._internal.ports import DISTRIBUTIONS, known_ports
 from amalthea_uros._internal.records import dataclass, field
@@ -56,37 +57,53 @@ def build_facts(files: Iterable[SourceFile]) -> BuildFacts:
             case "CMakeLists.txt":
                 _cmake(facts, file)
             case "library.properties":
-                _arduino(facts, dict(_settings(file, "")))
+                _arduino(facts, _sections(file)[""])
     return facts
 
 
-_SETTING = re.compile(r"\s*([\w.]+)\s*=\s*(.*?)\s*(?:\s[;#].*)?$")
+_NAME = re.compile(r"[\w.]+")
+_REMARK = re.compile(r"\s[;#]")
 _REFERENCE = re.compile(r"\$\{([\w:-]+)\.(\w+)\}")
 _SECTION = re.compile(r"\s*\[(.*)\]")
 #: Sections that extend each other.
 _MAX_DEPTH = 10
+#: References in a value that are replaced, and characters of what replaces one: a file must not grow by them without limit.
+_MAX_REFERENCES, _MAX_REFERRED = 20, 2000
+#: The settings of an environment of PlatformIO that say something.
+_OF_ENVIRONMENTS = (
+    *("extends", "lib_deps", "board", "framework", "build_flags"),
+    *("board_microros_distro", "board_microros_transport", "board_build.f_cpu"),
+)
+
+#: Settings by their names, and those of sections by the names of the sections.
+_Settings: TypeAlias = Mapping[str, Stated]
+_Sections: TypeAlias = Mapping[str, _Settings]
 
 
-def _settings(file: SourceFile, section: str) -> Iterator[tuple[str, Stated]]:
-    """The settings `NAME=VALUE` of a section, "" for those before any; lines that are indented continue a value."""
-    current, name = "", ""
-    values: dict[str, Stated] = {}
+def _sections(file: SourceFile) -> _Sections:
+    """The settings `NAME=VALUE` of sections, "" for those before any; lines that are indented continue a value."""
+    found: dict[str, dict[str, tuple[list[str], Location]]] = {}
+    section, name = found.setdefault("", {}), ""
     for row, line in enumerate(file.text.decode("utf-8", "replace").splitlines()):
+        key, equals, value = line.partition("=")
         if (header := _SECTION.fullmatch(line.rstrip())) is not None:
-            current, name = header[1], ""
-        elif current != section or line.lstrip()[:1] in ("#", ";"):
+            section, name = found.setdefault(header[1], {}), ""
+        elif line.lstrip()[:1] in ("#", ";"):
             continue
         elif line[:1].isspace() and name:
-            values[name] = Stated(f"{values[name].value} {line.strip()}", values[name].place)
-        elif (setting := _SETTING.fullmatch(line)) is not None:
-            name = setting[1]
-            values[name] = Stated(setting[2].strip('"'), file.location(row, 0))
-    yield from values.items()
+            section[name][0].append(line.strip())
+        elif equals and _NAME.fullmatch(key.strip()) is not None:
+            name = key.strip()
+            section[name] = [_REMARK.split(value, maxsplit=1)[0].strip().strip('"')], file.location(row, 0)
+    return {
+        title: {name: Stated(" ".join(lines), place) for name, (lines, place) in settings.items()}
+        for title, settings in found.items()
+    }
 
 
-def _kconfig(facts: BuildFacts, file: SourceFile) -> Mapping[str, Stated]:
+def _kconfig(facts: BuildFacts, file: SourceFile) -> _Settings:
     """The settings of a file of Kconfig, which are macros in the code: a switch that is on is 1."""
-    settings = dict(_settings(file, ""))
+    settings = _sections(file)[""]
     facts.macros |= {
         name: "1" if stated.value == "y" else stated.value for name, stated in settings.items() if stated.value != "n"
     }
@@ -95,14 +112,17 @@ def _kconfig(facts: BuildFacts, file: SourceFile) -> Mapping[str, Stated]:
 
 def _platformio(facts: BuildFacts, file: SourceFile) -> None:
     """https://docs.platformio.org, projectconf; of several environments only what all of them say alike."""
-    names = re.findall(r"^\s*\[(env:.*)\]", file.text.decode("utf-8", "replace"), re.MULTILINE)
-    general, project = dict(_settings(file, "env")), dict(_settings(file, "platformio"))
-    if (default := project.get("default_envs")) is not None:
-        names = [name for name in names if name.removeprefix("env:") in re.split(r"[,\s]+", default.value)] or names
-    every = [_interpolated(file, general | _extended(file, name)) for name in names] or [general]
-    common = {
-        key: stated for key, stated in every[0].items() if len({each[key].value if key in each else "" for each in every}) == 1
-    }
+    sections = _sections(file)
+    names = [name for name in sections if name.startswith("env:")]
+    general = _of_environment(sections.get("env", {}))
+    if (default := sections.get("platformio", {}).get("default_envs")) is not None:
+        chosen = set(re.split(r"[,\s]+", default.value))
+        names = [name for name in names if name.removeprefix("env:") in chosen] or names
+    known: dict[str, _Settings] = {}
+    every = (_interpolated(sections, {**general, **_extended(sections, name, known)}) for name in names)
+    common = dict(next(every, general))
+    for settings in every:
+        common = {key: each for key, each in common.items() if key in settings and settings[key].value == each.value}
     libraries = common.get("lib_deps")
     if libraries is not None and (port := re.search("micro_ros_(platformio|arduino)", libraries.value)) is not None:
         facts.port = Stated(port[1], libraries.place)
@@ -122,24 +142,39 @@ def _platformio(facts: BuildFacts, file: SourceFile) -> None:
         facts.transport = facts.transport or Stated("usb_cdc" if usb[1] == "1" else "serial", flags.place)
 
 
-def _extended(file: SourceFile, section: str, depth: int = 0) -> dict[str, Stated]:
-    """The settings of a section, with those of the sections that it extends, of which the last one counts."""
-    own = dict(_settings(file, section))
-    around = own["extends"].value if "extends" in own and depth < _MAX_DEPTH else ""
-    inherited: dict[str, Stated] = {}
-    for name in filter(None, re.split(r"[,\s]+", around)):
-        inherited |= _extended(file, name, depth + 1)
-    return inherited | own
+def _of_environment(settings: _Settings) -> _Settings:
+    return {name: settings[name] for name in _OF_ENVIRONMENTS if name in settings}
 
 
-def _interpolated(file: SourceFile, settings: Mapping[str, Stated]) -> dict[str, Stated]:
+def _extended(sections: _Sections, title: str, known: dict[str, _Settings], depth: int = 0) -> _Settings:
+    """The settings of a section, with those of the sections that it extends, of which the last one counts.
+
+    Parameters
+    ----------
+    known : those of sections that were asked for; this one is added
+    """
+    if title not in known:
+        own = known[title] = _of_environment(sections.get(title, {}))
+        around = own["extends"].value if "extends" in own and depth < _MAX_DEPTH else ""
+        inherited: dict[str, Stated] = {}
+        for name in filter(None, re.split(r"[,\s]+", around)):
+            inherited |= _extended(sections, name, known, depth + 1)
+        known[title] = inherited | dict(own)
+    return known[title]
+
+
+def _interpolated(sections: _Sections, settings: _Settings) -> _Settings:
     """Settings with `${section.name}` replaced by that value."""
-    return {name: Stated(_REFERENCE.sub(partial(_referred, file), each.value), each.place) for name, each in settings.items()}
+    replacement = partial(_referred, sections)
+    return {
+        name: Stated(_REFERENCE.sub(replacement, each.value, count=_MAX_REFERENCES), each.place)
+        for name, each in settings.items()
+    }
 
 
-def _referred(file: SourceFile, reference: re.Match[str]) -> str:
-    stated = dict(_settings(file, reference[1])).get(reference[2])
-    return stated.value if stated is not None else reference[0]
+def _referred(sections: _Sections, reference: re.Match[str]) -> str:
+    stated = sections.get(reference[1], {}).get(reference[2])
+    return stated.value if stated is not None and len(stated.value) <= _MAX_REFERRED else reference[0]
 
 
 def _transport(stated: Stated, words: Mapping[str, str]) -> Stated | None:
@@ -152,7 +187,7 @@ def _distribution(stated: Stated) -> Stated | None:
     return Stated(names.pop(), stated.place) if len(names) == 1 else None
 
 
-def _zephyr(facts: BuildFacts, settings: Mapping[str, Stated]) -> None:
+def _zephyr(facts: BuildFacts, settings: _Settings) -> None:
     """The configuration of Zephyr: micro-ROS/micro_ros_zephyr_module modules/libmicroros/Kconfig, zephyr kernel/Kconfig."""
     micro_ros = [stated for name, stated in settings.items() if name.startswith("CONFIG_MICROROS")]
     if micro_ros:
@@ -169,7 +204,7 @@ def _zephyr(facts: BuildFacts, settings: Mapping[str, Stated]) -> None:
     facts.main_priority = _number(settings.get("CONFIG_MAIN_THREAD_PRIORITY")) or facts.main_priority
 
 
-def _espidf(facts: BuildFacts, settings: Mapping[str, Stated]) -> None:
+def _espidf(facts: BuildFacts, settings: _Settings) -> None:
     """The configuration of ESP-IDF: espressif/esp-idf components/freertos/Kconfig, components/esp_system/Kconfig."""
     micro_ros = [stated for name, stated in settings.items() if name.startswith("CONFIG_MICRO_ROS")]
     if micro_ros:
@@ -194,7 +229,7 @@ _CMAKE_PORTS = (
     (r"pico_sdk_init\s*\(|pico_sdk_import", "pico-sdk"),
     (r"find_package\s*\(\s*Zephyr", "zephyr"),
 )
-_STDIO = re.compile(r"^\s*pico_enable_stdio_(usb|uart)\s*\(\s*\S+\s+(\w+)\s*\)", re.MULTILINE)
+_STDIO = re.compile(r"^[ \t]*pico_enable_stdio_(usb|uart)\s*\(\s*\S+\s+(\w+)\s*\)", re.MULTILINE)
 
 
 def _cmake(facts: BuildFacts, file: SourceFile) -> None:
@@ -203,22 +238,17 @@ def _cmake(facts: BuildFacts, file: SourceFile) -> None:
     for pattern, port in _CMAKE_PORTS:
         if facts.port is None and (match := re.search(pattern, text)) is not None:
             facts.port = Stated(port, _place(file, text, match.start()))
-    enabled = {
-        kind: _place(file, text, match.start())
-        for match in _STDIO.finditer(text)
-        for kind, value in [match.groups()]
-        if value in ("1", "ON")
-    }
+    enabled = {match[1]: match.start() for match in _STDIO.finditer(text) if match[2] in ("1", "ON")}
     if len(enabled) == 1:
-        kind, place = next(iter(enabled.items()))
-        facts.transport = Stated("usb_cdc" if kind == "usb" else "serial", place)
+        kind, position = next(iter(enabled.items()))
+        facts.transport = Stated("usb_cdc" if kind == "usb" else "serial", _place(file, text, position))
 
 
 def _place(file: SourceFile, text: str, position: int) -> Location:
     return file.location(text.count("\n", 0, position), 0)
 
 
-def _arduino(facts: BuildFacts, properties: Mapping[str, Stated]) -> None:
+def _arduino(facts: BuildFacts, properties: _Settings) -> None:
     """The properties of a library for Arduino: its version names the distribution."""
     name, version = properties.get("name"), properties.get("version")
     if name is not None and name.value == "micro_ros_arduino":

@@ -206,9 +206,9 @@ def _thread(thread: Thread) -> Iterator[str]:
 
 def _is_of_other_loop(executor: CodeExecutor) -> bool:
     """Whether the description has its loop at another executor, the first one that spins in it."""
-    if not executor.spins or executor.spins[0].again is not None:
+    if not executor.spins or executor.spins[0].items.again is not None:
         return False
-    return executor.spins[0].executors[:1] not in ((), (executor.key,))
+    return executor.spins[0].items.executors[:1] not in ((), (executor.key,))
 
 
 def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
@@ -216,21 +216,21 @@ def _loop(executor: CodeExecutor, names: CodeNames) -> Iterator[str]:
         yield f"loop: {GAP} # no call lets it spin"
         return
     spin = executor.spins[0]
-    if spin.again is not None:
-        yield f"loop: {GAP}{_at(spin.again.place, 'an executor spins more than once in an iteration, which a loop cannot have')}"
+    if spin.items.again is not None:
+        yield f"loop: {GAP}{_at(spin.items.again.place, 'an executor spins more than once in an iteration, which a loop cannot have')}"
         return
     if spin.kind is SpinKind.ENDLESS:
         is_default = executor.timeout_place is None
         time = Time(10**12) if is_default else executor.timeout
         yield f"loop: {{spin: {_time(time)}}}{_at(spin.place, 'the default timeout' if is_default else '')}"
         return
-    if {item.kind for item in spin.items} - {CodeLoopKind.SPIN, CodeLoopKind.SLEEP} or len(spin.executors) > 1:
+    if {item.kind for item in spin.items} - {CodeLoopKind.SPIN, CodeLoopKind.SLEEP} or len(spin.items.executors) > 1:
         yield "loop:"
         yield from (f"  - {_loop_item(item, executor, names)}" for item in spin.items)
         return
     parts = [f"{spin.kind}: {_time(spin.time)}"]
     if spin.kind is SpinKind.SOME:
-        sleep = spin.sleep if spin.is_in_loop else None
+        sleep = spin.items.sleep if spin.is_in_loop else None
         parts += [f"sleep: {_time(sleep)}"] if sleep != 0 else []
     elif executor.timeout_place is not None:
         parts.append(f"timeout: {_time(executor.timeout)}")

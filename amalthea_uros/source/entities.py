@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 from amalthea_uros._internal.message_types import MessageType
 from amalthea_uros._internal.records import dataclass
-from amalthea_uros.source.arrays import member_of
+from amalthea_uros.source.arrays import members_of
 from amalthea_uros.source.facts import CodeCallback, CodeEntity, CodeEntityKind
-from amalthea_uros.source.scope import Expression, called
-from amalthea_uros.source.syntax import descendants, text_of
+from amalthea_uros.source.scope import Expression
+from amalthea_uros.source.syntax import called, descendants, text_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall
 from amalthea_uros.units import Time
 
@@ -158,7 +158,7 @@ def _reliability(call: FunctionCall, quality: str | None) -> str | None:
     profiles = profile.program.assigned.get(f"{profile.core.text}.qos", set())
     if profiles and not assigned:
         return _PROFILES.get(next(iter(profiles))) if len(profiles) == 1 else None
-    own = member_of(profile.resolved.node, "reliability", _POLICIES_IN_ORDER)
+    own = members_of(profile.resolved.node, _POLICIES_IN_ORDER).get("reliability")
     stated = {*assigned, *([text_of(own)] if own is not None else [])}
     if stated:
         return _POLICIES.get(next(iter(stated))) if len(stated) == 1 else None

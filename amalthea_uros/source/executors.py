@@ -91,16 +91,14 @@ def _add(facts: CodeFacts, call: FunctionCall, walk: CodeWalk) -> None:
         message=message.core.text if message is not None and kind is CodeEntityKind.SUBSCRIPTION else "",
         always=kind is CodeEntityKind.SUBSCRIPTION and last is not None and last.resolved.text == "ALWAYS",
     )
-    if not any(each.entity == handle.entity and each.kind is kind for each in executor.handles):
-        executor.handles.append(handle)
+    executor.handle_by_entity.setdefault((kind, entity.key), handle)
 
 
 def _add_lifecycle(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:
     executor = executor_of(facts, call, 1)
     if executor is not None:
         handle = CodeHandle(kind=CodeEntityKind.LIFECYCLE, entity=call.name, callbacks=(), place=call.place)
-        if all(each.entity != call.name for each in executor.handles):
-            executor.handles.append(handle)
+        executor.handle_by_entity.setdefault((handle.kind, handle.entity), handle)
 
 
 def _timeout(facts: CodeFacts, call: FunctionCall, _walk: CodeWalk) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from enum import StrEnum
 from fractions import Fraction
+from functools import cached_property
 
 from amalthea_uros._internal.message_types import MessageType
 from amalthea_uros._internal.records import dataclass, field
@@ -155,6 +157,32 @@ class CodeLoopItem:
     every: Time = 0
 
 
+class CodeLoop(tuple[CodeLoopItem, ...]):
+    """The items of a loop, in order, which thousands of executors may share."""
+
+    @cached_property
+    def sleep(self) -> Time | None:
+        """What the thread sleeps, or waits busily; None if that is not constant."""
+        times = [item.time for item in self if item.kind in (CodeLoopKind.SLEEP, CodeLoopKind.BUSY_WAIT)]
+        return None if None in times else Time(sum(filter(None, times)))
+
+    @cached_property
+    def executors(self) -> tuple[str, ...]:
+        """Keys of the executors that spin, in order, each once."""
+        return tuple(dict.fromkeys(item.of for item in self if item.kind is CodeLoopKind.SPIN))
+
+    @cached_property
+    def again(self) -> CodeLoopItem | None:
+        """The first item in which an executor spins that did already in the same iteration, or that is in a loop of its own."""
+        seen: set[str] = set()
+        for item in self:
+            if item.kind is CodeLoopKind.SPIN:
+                if item.of in seen or item.note:
+                    return item
+                seen.add(item.of)
+        return None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spin:
     """A call that lets an executor spin.
@@ -162,37 +190,15 @@ class Spin:
     Attributes
     ----------
     time : timeout or period; None if it is not constant
-    items : everything in the same loop, in order, if it is `spin_some` in one
+    items : everything in the same loop, if it is `spin_some` in one
     is_in_loop : whether it is repeated
     """
 
     kind: SpinKind
     time: Time | None
     place: Location
-    items: tuple[CodeLoopItem, ...]
+    items: CodeLoop
     is_in_loop: bool
-
-    @property
-    def sleep(self) -> Time | None:
-        """What the thread sleeps, or waits busily, in the same loop; None if that is not constant."""
-        times = [item.time for item in self.items if item.kind in (CodeLoopKind.SLEEP, CodeLoopKind.BUSY_WAIT)]
-        return None if None in times else Time(sum(filter(None, times)))
-
-    @property
-    def executors(self) -> tuple[str, ...]:
-        """Keys of the executors that spin in the same loop, in order, each once."""
-        return tuple(dict.fromkeys(item.of for item in self.items if item.kind is CodeLoopKind.SPIN))
-
-    @property
-    def again(self) -> CodeLoopItem | None:
-        """The first item in which an executor spins that did already in the same iteration, or that is in a loop of its own."""
-        seen: set[str] = set()
-        for item in self.items:
-            if item.kind is CodeLoopKind.SPIN:
-                if item.of in seen or item.note:
-                    return item
-                seen.add(item.of)
-        return None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -206,7 +212,7 @@ class CodeSender:
 
     name: str
     thread: Thread | None
-    items: tuple[CodeLoopItem, ...]
+    items: CodeLoop
     place: Location
 
 
@@ -240,13 +246,18 @@ class CodeExecutor:
     variable: str
     place: Location
     max_handles: int | None
-    handles: list[CodeHandle] = field(default_factory=list)
+    handle_by_entity: dict[tuple[CodeEntityKind, str], CodeHandle] = field(default_factory=dict)
     timeout: Time | None = None
     timeout_place: Location | None = None
     trigger: CodeTrigger | None = None
     semantics: str = "ROS"
     spins: list[Spin] = field(default_factory=list)
     thread: Thread | None = None
+
+    @property
+    def handles(self) -> Collection[CodeHandle]:
+        """What was added to it, in order."""
+        return self.handle_by_entity.values()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -316,6 +327,12 @@ class CodeFacts:
     tick_rate: Fraction | None = None
     ticks_are_stated: bool = False
     findings: list[Finding] = field(default_factory=list)
+
+    def described_places(self) -> set[Location]:
+        """Where what the loops of the description have is."""
+        spins = (spin.items for executor in self.executors.values() for spin in executor.spins)
+        loops = {id(items): items for items in (*spins, *(sender.items for sender in self.senders))}
+        return {item.place for items in loops.values() for item in items}
 
     def of_kind(self, kind: CodeEntityKind) -> list[CodeEntity]:
         """What was created of a kind, in order."""

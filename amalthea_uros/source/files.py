@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
+from functools import cached_property
+from itertools import accumulate
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_directory, read_bytes
@@ -27,7 +30,7 @@ BUILD_FILES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SourceFile:
     """A file of source code.
 
@@ -46,9 +49,21 @@ class SourceFile:
 
     def location(self, row: int, column: int) -> Location:
         """A place in it, by row and column from 0, with the text of its line."""
-        lines = self.text.split(b"\n", row + 1)
-        line = lines[row].decode("utf-8", "replace").rstrip("\r") if row < len(lines) else ""
+        line = self._lines[row].decode("utf-8", "replace").rstrip("\r") if row < len(self._lines) else ""
         return Location(self.path, row + 1, column + 1, line)
+
+    def location_at(self, position: int) -> Location:
+        """The place of a byte."""
+        row = bisect_right(self._starts, position) - 1
+        return self.location(row, position - self._starts[row])
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        return [0, *accumulate(len(line) + 1 for line in self._lines)]
+
+    @cached_property
+    def _lines(self) -> list[bytes]:
+        return self.text.split(b"\n")
 
 
 @dataclass(frozen=True, slots=True)

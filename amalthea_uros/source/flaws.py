@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.ports import ACTION_SERVICES, ACTION_TOPICS, LIFECYCLE_SERVICES, known_ports, parameter_services
-from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import CREATIONS, RELIABLE
 from amalthea_uros.source.executors import ACTIONS, SPINS
 from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeExecutor, CodeFacts, CodeHandle, SpinKind
 from amalthea_uros.source.loops import ROUND_TRIPS, SENDS, Creations, is_only_at_creation, is_repeated, session_users
 from amalthea_uros.source.scope import literal
 from amalthea_uros.source.sleeps import SLEEPS, wait_of
+from amalthea_uros.source.spans import TextSpans
 from amalthea_uros.source.syntax import descendants, text_of
 from amalthea_uros.source.walk import ENTRIES, CodeWalk, FunctionCall
 from amalthea_uros.units import Time, time_text
@@ -78,9 +79,10 @@ def _unchecked(calls: list[FunctionCall]) -> Iterator[Finding]:
 
 
 def _pools(facts: CodeFacts) -> Iterator[Finding]:
+    added = {handle.entity for handle in _every_handle(facts)}
     for name, (default, kinds) in _POOLS.items():
         own = [entity for entity in facts.entities.values() if entity.kind in kinds]
-        implied = [(each, _created_by(each, facts)) for each in facts.entities.values()]
+        implied = [(each, _created_by(each, facts, added)) for each in facts.entities.values()]
         used = own + [each for each, created in implied for _ in range(sum(created.get(kind, 0) for kind in kinds))]
         option = facts.options.get(name)
         port = known_ports().get(facts.port)
@@ -103,8 +105,13 @@ def _pools(facts: CodeFacts) -> Iterator[Finding]:
             yield Finding("IMP007", severity, message, used[size].place, advice)
 
 
-def _created_by(entity: CodeEntity, facts: CodeFacts) -> Mapping[CodeEntityKind, int]:
-    """How many entities of each kind an action, or a server of parameters or of a lifecycle, creates in the middleware."""
+def _created_by(entity: CodeEntity, facts: CodeFacts, added: set[str]) -> Mapping[CodeEntityKind, int]:
+    """How many entities of each kind an action, or a server of parameters or of a lifecycle, creates in the middleware.
+
+    Parameters
+    ----------
+    added : the keys of what is added to executors
+    """
     match entity.kind:
         case CodeEntityKind.ACTION_SERVER:
             return {CodeEntityKind.SERVICE: ACTION_SERVICES, CodeEntityKind.PUBLISHER: ACTION_TOPICS, CodeEntityKind.TIMER: 1}
@@ -112,7 +119,7 @@ def _created_by(entity: CodeEntity, facts: CodeFacts) -> Mapping[CodeEntityKind,
             return {CodeEntityKind.CLIENT: ACTION_SERVICES, CodeEntityKind.SUBSCRIPTION: ACTION_TOPICS}
         case CodeEntityKind.LIFECYCLE:
             return {CodeEntityKind.SERVICE: LIFECYCLE_SERVICES, CodeEntityKind.PUBLISHER: 1}
-        case CodeEntityKind.PARAMETER_SERVER if any(each.entity == entity.key for each in _every_handle(facts)):
+        case CodeEntityKind.PARAMETER_SERVER if entity.key in added:
             services = parameter_services(facts.ros.value if facts.ros is not None else None)
             changes = dict(entity.options).get("notify_changed_over_dds", True)
             return {CodeEntityKind.SERVICE: services, CodeEntityKind.PUBLISHER: int(changes)}
@@ -205,7 +212,7 @@ def _waiting(executor: CodeExecutor) -> Iterator[Finding]:
                 "IMP010", Severity.WARNING, message, spin.place, "Call rclc_executor_set_timeout with less than the period."
             )
         is_first = not spin.items or spin.items[0].place == spin.place
-        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.sleep == 0 and is_first:
+        if spin.kind is SpinKind.SOME and spin.is_in_loop and spin.items.sleep == 0 and is_first:
             message = "the loop does not sleep; with timers only, some versions of the middleware never wait either"
             yield Finding(
                 "IMP018",
@@ -229,7 +236,7 @@ def _timeout(executor: CodeExecutor) -> Time:
 
 def _timers(executor: CodeExecutor, facts: CodeFacts) -> Iterator[Finding]:
     spin = next(iter(executor.spins), None)
-    least = None if spin is None else spin.time if spin.kind is SpinKind.PERIOD else spin.sleep
+    least = None if spin is None else spin.time if spin.kind is SpinKind.PERIOD else spin.items.sleep
     for handle in executor.handles:
         entity = facts.entities.get(handle.entity)
         if entity is not None and entity.period is not None and least is not None and entity.period < least:
@@ -245,7 +252,7 @@ def _triggers(executor: CodeExecutor) -> Iterator[Finding]:
 
 
 def _pings(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
-    described = _in_loops(facts)
+    described = facts.described_places()
     creations = Creations(walk.calls)
     users = [(call, creations.of(call)) for call in walk.calls if call.name in (*SPINS, *SENDS) and is_repeated(call)]
     for call in walk.calls:
@@ -295,16 +302,9 @@ def _sleepless(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
             )
 
 
-def _in_loops(facts: CodeFacts) -> set[Location]:
-    """Where what the loops of the description have is."""
-    # Those of spins in the same loop are the same tuple.
-    loops = {id(spin.items): spin.items for executor in facts.executors.values() for spin in executor.spins}
-    return {item.place for items in (*loops.values(), *(sender.items for sender in facts.senders)) for item in items}
-
-
 def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
     published = {place for places in facts.publishes.values() for place in places.values()}
-    reported, described = set(), _in_loops(facts)
+    reported, described = set(), facts.described_places()
     for call in walk.calls:
         given = call.argument(0)
         entity = facts.entities.get(given.key) if call.name in SENDS and given is not None else None
@@ -314,7 +314,7 @@ def _blocking(facts: CodeFacts, walk: CodeWalk) -> Iterator[Finding]:
         if call.place in described:
             message = f"'{entity.variable}' {_VERBS[call.name]} in a loop, outside of callbacks: that delays every iteration"
             yield Finding("IMP013", Severity.WARNING, message, call.place, "Publish in the callback of a timer.")
-        elif call.place in published and call.loops and any(call.root.scope == scope for scope in facts.publishes if call.root):
+        elif call.place in published and call.loops and call.root is not None and call.root.scope in facts.publishes:
             message = (
                 f"'{entity.variable}' {_VERBS[call.name]} in a loop of unknown length, of which the description has one message"
             )
@@ -366,17 +366,17 @@ def _is_read_macro(node: Node, walk: CodeWalk) -> bool:
 def _unread(walk: CodeWalk) -> Iterator[Finding]:
     """Calls in the text that no path through the code led to."""
     for file, root in walk.program.files:
-        ignored = [(start, end) for path, start, end in walk.inactive if path == str(file.path)]
+        ignored = set(walk.inactive.get(str(file.path), ()))
         read = {start for path, start in walk.seen if path == str(file.path)}
         if _CALL.search(file.text) is None:
             continue
         for node in descendants(root):
             if node.type in ("comment", "string_literal", "preproc_def", "function_declarator") or _is_read_macro(node, walk):
-                ignored.append((node.start_byte, node.end_byte))
+                ignored.add((node.start_byte, node.end_byte))
+        spans = TextSpans(ignored)
         for match in _CALL.finditer(file.text):
             position = match.start()
-            if position not in read and not any(start <= position < end for start, end in ignored):
-                row = file.text.count(b"\n", 0, position)
-                place = file.location(row, position - (file.text.rfind(b"\n", 0, position) + 1))
+            if position not in read and position not in spans:
+                place = file.location_at(position)
                 message = f"'{match[0].decode()}' is in code that is not understood; it is not in the description"
                 yield Finding("IMP003", Severity.WARNING, message, place, "Add what it does to the description by hand.")

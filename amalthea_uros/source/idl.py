@@ -27,10 +27,11 @@ _TYPES = {
     "double": "float64",
     "string": "string",
 }
-_NOTHING = re.compile(r"//[^\n]*|/\*.*?\*/|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
-_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')
+_NOTHING = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|^[ \t]*#[^\n]*", re.DOTALL | re.MULTILINE)
+_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*+"?')
 _ANNOTATION = re.compile(r"@[\w:]+\s*(?:\([^()]*\))?")
 _STRUCT = re.compile(r"module\s+(\w+)\s*\{\s*module\s+(msg|srv)\s*\{(.*)", re.DOTALL)
+_TYPEDEF = re.compile(r"\btypedef\s+(.+)", re.DOTALL)
 _SEQUENCE = re.compile(r"sequence\s*<\s*(.+?)\s*(?:,\s*(\d+)\s*)?>", re.DOTALL)
 _MEMBER = re.compile(r"(.*[\s>])(\w+)\s*(?:\[\s*(\d+)\s*\])?\s*", re.DOTALL)
 
@@ -43,11 +44,14 @@ def idl_types(text: str) -> dict[str, str]:
         return {}
     package, kind, body = outer.groups()
     aliases = {
-        name: f"{field}{array}" for field, name, array in (_field(each) for each in re.findall(r"typedef\s+([^;]+);", body))
+        name: f"{field}{array}"
+        for statement in body.split(";")[:-1]
+        if (found := _TYPEDEF.search(statement)) is not None
+        for field, name, array in [_field(found[1])]
     }
     return {
         f"{package}/{kind}/{name}": " ".join(_members(members, aliases))
-        for name, members in re.findall(r"struct\s+(\w+)\s*\{([^}]*)\}", body)
+        for name, members in re.findall(r"struct\s+(\w+)\s*\{([^{}]*)\}", body)
     }
 
 
@@ -62,7 +66,7 @@ def _members(text: str, aliases: dict[str, str]) -> list[str]:
 
 def _field(text: str) -> tuple[str, str, str]:
     """A type as a `.msg` file has it, the name, and the brackets of an array."""
-    match = _MEMBER.fullmatch(f" {text.strip()}")
+    match = _MEMBER.fullmatch(f" {' '.join(text.split())}")
     if match is None:
         return "unknown", "", ""
     kind, name, count = match[1].strip(), match[2], match[3]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TypeAlias
 
 from amalthea_uros.source.walk import FunctionCall
 
@@ -20,28 +22,48 @@ _RELEASES: Mapping[str, str] = {
 }
 LOCKS = frozenset({*_RELEASES, *_RELEASES.values()})
 
-
-def is_lock(call: FunctionCall, calls: Sequence[FunctionCall]) -> bool:
-    """Whether a call takes a lock that the same thread releases; else it waits for another one, or for an interrupt."""
-    release, taken = _RELEASES.get(call.name), call.argument(0)
-    return (
-        release is not None
-        and taken is not None
-        and any(each.name == release and each.root is call.root and _key(each) == taken.key for each in calls)
-    )
+#: A function that takes or releases a lock, the thread that calls it, and the key of the lock.
+_LockUse: TypeAlias = tuple[str, int, str]
 
 
-def held_at(call: FunctionCall, calls: Sequence[FunctionCall]) -> set[str]:
-    """The locks that a thread holds where a call is."""
-    held: set[str] = set()
-    for each in calls:
-        if each is call:
-            break
-        if each.root is call.root and each.name in _RELEASES:
-            held.add(_key(each))
-        elif each.root is call.root and each.name in LOCKS:
-            held.discard(_key(each))
-    return held
+class ReleasedLocks:
+    """The locks that threads release which take them; who waits for others waits for another thread, or for an interrupt."""
+
+    def __init__(self, calls: Iterable[FunctionCall]) -> None:
+        self._released = {_use(call.name, call) for call in calls if call.name in LOCKS}
+
+    def has(self, call: FunctionCall) -> bool:
+        """Whether a call takes such a lock."""
+        release = _RELEASES.get(call.name)
+        return release is not None and call.argument(0) is not None and _use(release, call) in self._released
+
+
+def held_at_all(users: Sequence[FunctionCall], calls: Iterable[FunctionCall]) -> set[str]:
+    """The locks that threads hold wherever some calls are: for each, the calls are counted that are made while it is held.
+
+    Parameters
+    ----------
+    calls : all, in order
+    """
+    counted = set(map(id, users))
+    before: Counter[int] = Counter()
+    since: dict[tuple[int, str], int] = {}
+    held: Counter[str] = Counter()
+    for call in calls:
+        thread = id(call.root)
+        if id(call) in counted:
+            before[thread] += 1
+        elif call.name in _RELEASES:
+            since.setdefault((thread, _key(call)), before[thread])
+        elif call.name in LOCKS and (taken := since.pop((thread, _key(call)), None)) is not None:
+            held[_key(call)] += before[thread] - taken
+    for (thread, key), taken in since.items():
+        held[key] += before[thread] - taken
+    return {key for key, number in held.items() if number == len(users)}
+
+
+def _use(name: str, call: FunctionCall) -> _LockUse:
+    return name, id(call.root), _key(call)
 
 
 def _key(call: FunctionCall) -> str:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from amalthea_uros.diagnostics import Location
+from amalthea_uros._internal.limits import ADVICE, SOURCE_LOOP_ITEMS
+from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.errors import ReadError
 from amalthea_uros.source.entities import CREATIONS
 from amalthea_uros.source.executors import NANOSECOND, SPIN_KINDS, executor_of
-from amalthea_uros.source.facts import CodeFacts, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind
-from amalthea_uros.source.locks import held_at, is_lock
+from amalthea_uros.source.facts import CodeFacts, CodeLoop, CodeLoopItem, CodeLoopKind, CodeSender, Spin, SpinKind
+from amalthea_uros.source.locks import ReleasedLocks, held_at_all
 from amalthea_uros.source.ports import MILLISECOND
 from amalthea_uros.source.sleeps import SLEEPS, WaitCall, wait_of
 from amalthea_uros.source.walk import CodeWalk, FunctionCall, Mark
@@ -46,7 +49,7 @@ def _spin(call: FunctionCall, loops: _LoopItems) -> Spin:
         time=_timeout(call),
         place=call.place,
         # A sleep before an endless loop, or in setup(), is not part of the iteration.
-        items=loops.around(call) if kind is SpinKind.SOME and is_loop else (),
+        items=loops.around(call) if kind is SpinKind.SOME and is_loop else CodeLoop(),
         is_in_loop=(kind is not SpinKind.SOME and call.name != "rclc_executor_spin_one_period") or is_loop,
     )
 
@@ -55,7 +58,7 @@ def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
     """Add the loops that send outside of callbacks, and in which no executor spins."""
     published = {place for places in facts.publishes.values() for place in places.values()}
     loops = _LoopItems(facts, calls)
-    known = published | {item.place for executor in facts.executors.values() for spin in executor.spins for item in spin.items}
+    known = published | facts.described_places()
     for call in calls:
         sender = call.argument(0)
         is_sending = call.name in SENDS and sender is not None
@@ -70,7 +73,7 @@ def add_senders(facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
         facts.senders.append(CodeSender(name=name, thread=thread, items=items, place=call.place))
 
 
-def _add_to_spins(facts: CodeFacts, items: tuple[CodeLoopItem, ...]) -> bool:
+def _add_to_spins(facts: CodeFacts, items: CodeLoop) -> bool:
     """Whether executors spin in a loop that sends, which then is theirs, with the loop in which they spin in it."""
     spinning = [facts.executors[item.of] for item in items if item.kind is CodeLoopKind.SPIN]
     for executor in spinning:
@@ -126,8 +129,7 @@ def session_users(facts: CodeFacts, walk: CodeWalk) -> dict[str, list[FunctionCa
 def add_lock(facts: CodeFacts, walk: CodeWalk) -> None:
     """Note a lock that every thread holds whenever it uses the session."""
     calls = [call for each in session_users(facts, walk).values() for call in each]
-    held = [held_at(call, walk.calls) for call in calls]
-    if held and set.intersection(*held):
+    if calls and held_at_all(calls, walk.calls):
         facts.lock = calls[0].place
 
 
@@ -147,22 +149,40 @@ class _LoopItems:
 
     def __init__(self, facts: CodeFacts, calls: Sequence[FunctionCall]) -> None:
         self.creations = Creations(calls)
-        self._every = [(call, item) for call in calls if (item := _item(facts, call)) is not None and not is_lock(call, calls)]
-        self._found: dict[tuple[object, ...], tuple[CodeLoopItem, ...]] = {}
+        self._inside: dict[tuple[int, Mark | None], list[tuple[FunctionCall, CodeLoopItem]]] = defaultdict(list)
+        self._found: dict[tuple[object, ...], CodeLoop] = {}
+        self._left = SOURCE_LOOP_ITEMS
+        locks = ReleasedLocks(calls)
+        for call in calls:
+            if (item := _item(facts, call)) is not None and not locks.has(call):
+                for loop in (None, *dict.fromkeys(call.loops)):
+                    self._inside[id(call.root), loop].append((call, item))
 
-    def around(self, user: FunctionCall) -> tuple[CodeLoopItem, ...]:
-        """The items in the same loop as a call that spins or sends."""
-        used = user.argument(0)
-        key = (id(user.root), user.loops, user.conditions, None if used is None else used.key)
+    def around(self, user: FunctionCall) -> CodeLoop:
+        """The items in the same loop as a call that spins or sends.
+
+        Raises
+        ------
+        ReadError : there are too many, under too many conditions.
+        """
+        # What else a call uses makes a difference by the conditions under which that is created only.
+        created = frozenset(each.conditions for each in self.creations.of(user))
+        key = (id(user.root), user.loops, user.conditions, created)
         if key not in self._found:
-            self._found[key] = tuple(self._items(user))
+            self._found[key] = CodeLoop(self._items(user))
         return self._found[key]
 
     def _items(self, user: FunctionCall) -> Iterator[CodeLoopItem]:
         """The items in the same loop, or in one in it, and not in another branch of a choice, such as another state."""
         created = self.creations.of(user)
-        for call, item in self._every:
-            if call.root is not user.root or call.loops[: len(user.loops)] != user.loops or call.excludes(user):
+        candidates = self._inside[id(user.root), user.loops[-1] if user.loops else None]
+        self._left -= len(candidates)
+        if self._left < 0:
+            message = "too much is in loops, under too many conditions"
+            raise ReadError([Finding("IMP002", Severity.ERROR, message, user.place, f"Give only the application. {ADVICE}")])
+        for call, item in candidates:
+            # A function that is called in several places has the same loop several times.
+            if call.loops[: len(user.loops)] != user.loops or call.excludes(user):
                 continue
             if is_only_at_creation(call, user, created):
                 continue

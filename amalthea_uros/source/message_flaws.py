@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from amalthea_uros._internal.message_types import length_of
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.source.entities import BEST_EFFORT
-from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeFacts, CodeHandle
+from amalthea_uros.source.facts import CodeEntity, CodeEntityKind, CodeFacts
 from amalthea_uros.source.program import CodeProgram
 from amalthea_uros.source.scope import literal
 
@@ -17,35 +17,53 @@ from amalthea_uros.source.scope import literal
 _MTU, _HEADERS = 512, 12
 _MTU_OPTION = re.compile(r"UCLIENT_\w+_TRANSPORT_MTU")
 
+_WORD = re.compile(r"\w+")
+_POINTER = re.compile(r"\*\s*(\w+)")
+_CALL = re.compile(r"\b(\w++)\s*+\(")
+#: Names of functions that give what they are called with memory, and what a member gets with it.
+_GIVING = re.compile(r"memory|assign|Sequence__init|Sequence__create")
+_ASSIGNED = re.compile(r"(?=\bcapacity\s*+=|=\s*+micro_ros_string_utilities_)")
+
 
 def message_flaws(facts: CodeFacts, program: CodeProgram) -> Iterator[Finding]:
     """The findings about messages."""
-    text = b"\n".join(file.text for file, _ in program.files).decode("utf-8", "replace")
-    for executor in facts.executors.values():
-        for handle in executor.handles:
-            entity = facts.entities.get(handle.entity)
-            if entity is not None and handle.message and _lacks_memory(entity, handle, facts, text):
-                message = (
-                    f"nothing gives the strings and sequences of '{handle.message}' ({entity.type}) memory: "
-                    "messages that need it are not taken, and the callback never runs for them"
-                )
-                advice = "Call micro_ros_utilities_create_message_memory for it, or set data and capacity, before it is added."
-                yield Finding("IMP021", Severity.WARNING, message, handle.place, advice)
+    needy = [
+        (entity, handle)
+        for executor in facts.executors.values()
+        for handle in executor.handles
+        if (entity := facts.entities.get(handle.entity)) is not None and handle.message and _needs_memory(entity, facts)
+    ]
+    given = _with_memory(program) if needy else set()
+    for entity, handle in needy:
+        if re.split(r"\W", handle.message)[0] not in given:
+            message = (
+                f"nothing gives the strings and sequences of '{handle.message}' ({entity.type}) memory: "
+                "messages that need it are not taken, and the callback never runs for them"
+            )
+            advice = "Call micro_ros_utilities_create_message_memory for it, or set data and capacity, before it is added."
+            yield Finding("IMP021", Severity.WARNING, message, handle.place, advice)
     for entity in facts.entities.values():
         yield from _too_long(entity, facts)
 
 
-def _lacks_memory(entity: CodeEntity, handle: CodeHandle, facts: CodeFacts, text: str) -> bool:
-    """Whether a type has strings or sequences, and no text looks as if it gave a variable memory for them."""
+def _needs_memory(entity: CodeEntity, facts: CodeFacts) -> bool:
+    """Whether a type has strings or sequences."""
     length = length_of(entity.type, facts.types) if entity.type is not None else None
-    if length is None or length.is_fixed:
-        return False
-    name = re.escape(re.split(r"\W", handle.message)[0])
-    is_assigned = rf"\b{name}\b[^;]*(\bcapacity\s*=|=\s*micro_ros_string_utilities_)"
-    gives = rf"{is_assigned}|\b\w*(memory|assign|Sequence__init|Sequence__create)\w*\s*\([^;]*\b{name}\b"
-    # A pointer can lead to memory that is given elsewhere, under another name.
-    is_pointer = re.search(rf"\*\s*{name}\b", text) is not None
-    return not is_pointer and re.search(gives, text) is None
+    return length is not None and not length.is_fixed
+
+
+def _with_memory(program: CodeProgram) -> set[str]:
+    """The variables to which the text of a statement seems to give memory, and pointers, which can lead to any; "" is one of them."""
+    found = {""}
+    text = b"\n".join(file.text for file, _ in program.files).decode("utf-8", "replace")
+    for statement in text.split(";"):
+        found.update(_POINTER.findall(statement))
+        calls = (call for call in _CALL.finditer(statement) if _GIVING.search(call[1]) is not None)
+        if (call := next(calls, None)) is not None:
+            found.update(_WORD.findall(statement, call.end()))
+        assigned = max((match.start() for match in _ASSIGNED.finditer(statement)), default=0)
+        found.update(_WORD.findall(statement, 0, assigned))
+    return found
 
 
 def _too_long(entity: CodeEntity, facts: CodeFacts) -> Iterator[Finding]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 from amalthea_uros.source.facts import CodeEntityKind, CodeFacts, CodeHandle
 
 _LONGEST = 150
@@ -21,6 +23,7 @@ class CodeNames:
 
     def __init__(self, facts: CodeFacts) -> None:
         self._used: set[str] = set()
+        self._numbers: dict[str, int] = defaultdict(lambda: 1)
         self.executors: dict[str, str] = {}
         self.handles: dict[str, str] = {}
         self.topics = {each.key: each.name for each in facts.of_kind(CodeEntityKind.PUBLISHER) if each.name is not None}
@@ -44,10 +47,9 @@ class CodeNames:
         text = "".join(each if each.isprintable() else "?" for each in name).strip()[:_LONGEST] or "unnamed"
         if text in self._used:
             text = f"{text}_{variable}"[:_LONGEST]
-        number = 2
         plain = text
         while text in self._used:
-            text = f"{plain}_{number}"
-            number += 1
+            self._numbers[plain] += 1
+            text = f"{plain}_{self._numbers[plain]}"
         self._used.add(text)
         return text

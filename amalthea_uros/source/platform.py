@@ -25,7 +25,7 @@ _HEADERS = (
     (r"freertos/FreeRTOS\.h|esp_\w+\.h", "espidf"),
     (r"FreeRTOS\.h", "freertos"),
 )
-_INCLUDE = re.compile(rb'^\s*#\s*include\s*[<"]([^">]+)[">]', re.MULTILINE)
+_INCLUDE = re.compile(rb'^[ \t]*#[ \t]*include[ \t]*[<"]([^">\n]+)[">]', re.MULTILINE)
 #: Ports whose programs call the functions of Arduino.
 OF_ARDUINO = ("arduino", "platformio")
 _RTOS = {"zephyr": "zephyr", "espidf": "freertos", "freertos": "freertos", "nuttx": "nuttx"}

@@ -4,31 +4,49 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location, Severity
-from amalthea_uros.source.arrays import WIDTHS, declared_sizes
+from amalthea_uros.source.arrays import WIDTHS, declared_sizes, elements_of, members_of
 from amalthea_uros.source.constructions import made_class
 from amalthea_uros.source.files import SourceFile
-from amalthea_uros.source.syntax import descendants, is_too_deep, parse, text_of
+from amalthea_uros.source.syntax import called, descendants, is_conditional, is_too_deep, parse, text_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
 _CLASSES = ("class_specifier", "struct_specifier")
 _NESTED = ("pointer_declarator", "array_declarator", "reference_declarator", "parenthesized_declarator", "init_declarator")
+#: Functions that write a text to a buffer, which they are given first -> the position of its format.
+_PRINTS = {"snprintf": 2, "sprintf": 1}
 #: Classes that are members of each other.
 _MAX_DEPTH = 20
 _CHANGES = ("assignment_expression", "update_expression")
 #: A macro with parameters whose text is a statement.
 _STATEMENT = re.compile(rb"^[ \t]*#[ \t]*define[ \t]+(\w+)\([^)\n]*\)[ \t]*(?:\\\r?\n\s*)?(?:\{|do\b|if\b)", re.MULTILINE)
+#: What looks like a call of a function, alone in a line and without a semicolon.
+_ALONE = re.compile(rb"^[ \t]*(\w++)[ \t]*\([^\n;{}\\]*\)(?=[ \t\r]*$)", re.MULTILINE)
 #: A stack of Zephyr, which is an array by a macro: zephyr include/zephyr/kernel/thread_stack.h.
-_STACK = re.compile(r"\bK_(?:THREAD|KERNEL)_STACK_(?:MEMBER|DEFINE)\s*\(\s*(\w+)\s*,\s*([^;]+?)\s*\)\s*;")
+_STACK = re.compile(r"\bK_(?:THREAD|KERNEL)_STACK_(?:MEMBER|DEFINE)\s*\(\s*(\w+)\s*,")
+_STATIC = re.compile(r"\bstatic\b")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+class PrintCall(NamedTuple):
+    """A call that writes a text to a buffer.
+
+    Attributes
+    ----------
+    given : the format and the values; empty where they are missing
+    """
+
+    start_byte: int
+    given: Sequence[Node]
+
+
+@dataclass(frozen=True, eq=False)
 class CodeFunction:
     """A function, a method or a lambda.
 
@@ -52,6 +70,33 @@ class CodeFunction:
     def scope(self) -> str:
         """A name for what is declared in it."""
         return f"{self.file.path}:{self.body.start_byte}:"
+
+    @cached_property
+    def prints(self) -> Mapping[str, Sequence[PrintCall]]:
+        """The calls that write to a buffer, in order, by the text of the buffer."""
+        found: dict[str, list[PrintCall]] = defaultdict(list)
+        for node in descendants(self.body):
+            name, arguments = called(node) if node.type == "call_expression" else ("", [])
+            format_place = _PRINTS.get(name.rpartition("::")[2])
+            if format_place is not None and arguments:
+                found[text_of(arguments[0])].append(PrintCall(node.start_byte, arguments[format_place:]))
+        return found
+
+    @cached_property
+    def returned(self) -> Node | None:
+        """The expression that it returns, if it does nothing else, or if that is the address of a variable that stays."""
+        if self.name == self.owner:
+            return None
+        statements = [child for child in self.body.named_children if child.type != "comment"]
+        returns = [each for each in descendants(self.body) if each.type == "return_statement"]
+        if len(returns) != 1 or statements[-1:] != returns or not returns[0].named_children:
+            return None
+        given = text_of(returns[0].named_children[0])
+        name = given.removeprefix("&").strip()
+        stays = any(_is_static(name, statement) for statement in text_of(self.body).split(";"))
+        if len(statements) > 1 and not stays and (not given.startswith("&") or name in self.locals):
+            return None
+        return returns[0].named_children[0]
 
 
 @dataclass(slots=True, eq=False)
@@ -94,17 +139,33 @@ class CodeProgram:
     values: dict[str, tuple[Node, CodeFunction | SourceFile]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     changed: set[str] = field(default_factory=set)
+    _object_numbers: dict[str, int] = field(default_factory=dict)
+    _elements: dict[Node, Sequence[Node]] = field(default_factory=dict)
+    _given_members: dict[tuple[Node, str], Mapping[str, Node]] = field(default_factory=dict)
+
+    def elements_of(self, values: Node) -> Sequence[Node]:
+        """The elements of a list, found once, because thousands of expressions may be elements of it."""
+        if values not in self._elements:
+            self._elements[values] = elements_of(values)
+        return self._elements[values]
+
+    def member_of(self, values: Node, member: str, owner: str) -> Node | None:
+        """The value that a list gives a member of a structure, by its name or by its position; None if it gives it none."""
+        if (values, owner) not in self._given_members:
+            self._given_members[values, owner] = members_of(values, tuple(self.members.get(owner, ())))
+        return self._given_members[values, owner].get(member)
 
     def number_of_objects(self, owner: str) -> int:
-        """How many objects of a class there are, as members, too; 0 if nothing shows one."""
-        return self._number_of_objects(owner, {}, 0)
+        """How many objects of a class there are, as members, too; 0 if nothing shows one; asked for when everything is read."""
+        return self._number_of_objects(owner, 0)
 
-    def _number_of_objects(self, owner: str, known: dict[str, int], depth: int) -> int:
+    def _number_of_objects(self, owner: str, depth: int) -> int:
+        known = self._object_numbers
         if owner in known or depth > _MAX_DEPTH:
             return known.get(owner, 0)
         known[owner] = 0  # of a class in itself, which only looks so where a brace is missing
         known[owner] = sum(
-            max(1, self._number_of_objects(around, known, depth + 1)) if around else 1
+            max(1, self._number_of_objects(around, depth + 1)) if around else 1
             for around in self.objects.get(owner, {}).values()
         )
         return known[owner]
@@ -128,7 +189,7 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
         if is_too_deep(root):
             program.findings.append(_too_deep(file))
             continue
-        for name, size in _STACK.findall(file.text.decode("utf-8", "replace")):
+        for name, size in _stacks(file.text.decode("utf-8", "replace")):
             program.arrays[name].add(size)
         program.files.append((file, root))
         for node in descendants(root):
@@ -140,15 +201,24 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
     return program
 
 
+def _stacks(text: str) -> Iterator[tuple[str, str]]:
+    """The names of stacks of Zephyr, and their sizes."""
+    for statement in text.split(";")[:-1]:
+        begin, end = _STACK.search(statement), statement.rstrip()
+        if begin is not None and end.endswith(")") and (size := end[begin.end() : -1].strip()):
+            yield begin[1], size
+
+
 def _with_semicolons(files: tuple[SourceFile, ...]) -> list[SourceFile]:
     """Files with a semicolon where a macro that is a statement has none, which compiles, but is no statement for the parser."""
     names = {name for file in files for name in _STATEMENT.findall(file.text)}
     if not names:
         return list(files)
-    alone = re.compile(
-        rb"^([ \t]*(?:%s)[ \t]*\([^\n;{}\\]*\))(?=[ \t\r]*$)" % b"|".join(map(re.escape, sorted(names))), re.MULTILINE
-    )
-    return [SourceFile(file.path, alone.sub(rb"\1;", file.text)) for file in files]
+
+    def with_semicolon(found: re.Match[bytes]) -> bytes:
+        return found[0] + b";" if found[1] in names else found[0]
+
+    return [SourceFile(file.path, _ALONE.sub(with_semicolon, file.text)) for file in files]
 
 
 def _too_deep(file: SourceFile) -> Finding:
@@ -170,6 +240,12 @@ def function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction |
         return None
     names = tuple(text_of(each) for each in parameters.named_children)
     return CodeFunction(name, file, body, parameters=names, locals=frozenset(names), is_macro=True)
+
+
+def _is_static(name: str, statement: str) -> bool:
+    """Whether a statement seems to declare a variable that stays."""
+    static = _STATIC.search(statement)
+    return static is not None and re.search(rf"\b{re.escape(name)}\b", statement[static.end() :]) is not None
 
 
 def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
@@ -201,23 +277,27 @@ def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
             name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
             if name is not None and value is not None:
                 program.values[text_of(name)] = value, file
-            elif name is not None:
-                program.macros[text_of(name)].add(_counted(node))
+        case "enumerator_list":
+            _note_counted(program, node)
         case "assignment_expression" | "update_expression":
             _note_change(program, node)
 
 
-def _counted(node: Node) -> str:
-    """The value of an enumerator without one, as an expression: one more than that of the enumerator before."""
-    number, before = 0, node.prev_named_sibling
-    while before is not None:
-        if before.type == "enumerator":
-            number += 1
-            value = before.child_by_field_name("value")
-            if value is not None:
-                return f"({text_of(value)}) + {number}"
-        before = before.prev_named_sibling
-    return str(number)
+def _note_counted(program: CodeProgram, enumerators: Node) -> None:
+    """The values of enumerators without one, as expressions: one more than that of the enumerator before, 0 for the first."""
+    before: str | None = ""
+    number = 0
+    for node in enumerators.named_children:
+        name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
+        if is_conditional(node):
+            before = None  # of those that follow
+        if node.type != "enumerator" or name is None:
+            continue
+        if value is not None:
+            before, number = f"({text_of(value)}) + ", 0
+        elif before is not None:
+            program.macros[text_of(name)].add(f"{before}{number}")
+        number += 1
 
 
 def _note_function(program: CodeProgram, file: SourceFile, node: Node) -> None:

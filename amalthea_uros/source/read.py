@@ -31,8 +31,10 @@ _CONSTANTS = {"tskIDLE_PRIORITY": "0"}
 _SERVER_HANDLES = ("RCLC_EXECUTOR_PARAMETER_SERVER_HANDLES", "RCLC_PARAMETER_EXECUTOR_HANDLES_NUMBER")
 #: A place in an array that is not constant.
 _OPEN = re.compile(r"\[(?!\d+\])[^\]]*\]")
+_DEFINED = re.compile(r"-D\s*(\w+)")
 _OPTION = re.compile(r'"\s*-D\s*(\w+)(?::\w+)?=([^"]*)"')
-_COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)
+#: Texts, which stay, and comments; those without an end are taken up to that of the line or the file.
+_COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*+"?)|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
 
 
 def read_facts(sources: Sources, board: str | None = None) -> CodeFacts:
@@ -207,9 +209,11 @@ def _several_programs(program: CodeProgram) -> list[Finding]:
 def _options(file: SourceFile) -> dict[str, CodeOption]:
     """The options in a file for colcon, which may have comments; anything else in it is ignored."""
     text = _COMMENT.sub(lambda match: match[1] or "", file.text.decode("utf-8", "replace"))
-    lines = file.text.decode("utf-8", "replace").split("\n")
-    found = {}
-    for name, value in _OPTION.findall(text):
-        row = next((row for row, line in enumerate(lines) if f"-D{name}" in line.replace(" ", "")), 0)
-        found[name] = CodeOption(name=name, value=value, place=file.location(row, 0))
-    return found
+    rows: dict[str, int] = {}
+    for row, line in enumerate(file.text.decode("utf-8", "replace").split("\n")):
+        for name in _DEFINED.findall(line):
+            rows.setdefault(name, row)
+    return {
+        name: CodeOption(name=name, value=value, place=file.location(rows.get(name, 0), 0))
+        for name, value in _OPTION.findall(text)
+    }

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from operator import eq, ge, gt, le, lt, ne
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.source.arrays import counted_array, elements_of, member_of, sized_operand
+from amalthea_uros.source.arrays import counted_array, sized_operand
 from amalthea_uros.source.constructions import arguments_of, made_class
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.program import CodeFunction, CodeProgram
-from amalthea_uros.source.syntax import descendants, parse_expression, text_of
+from amalthea_uros.source.syntax import called, parse_expression, text_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -34,10 +35,11 @@ THIS = "this"
 SITE = "@"
 #: Functions that allocate an object.
 _ALLOCATIONS = re.compile(r"\w*(m|c)alloc|\w*allocate")
-#: Functions that write a text to a buffer -> the position of its format; and those that make a text of a value.
-_PRINTS = {"snprintf": 2, "sprintf": 1}
+#: Functions that make a text of a value.
 _TEXTS = ("String", "string", "to_string")
 _FORMAT = re.compile(r"(%(?:%|\d*(?:l|ll|h|hh|z)?[dius]))")
+#: Of the width of a conversion; no buffer of a name has room for more.
+_WIDTH_DIGITS = 3
 _COMPARISONS = {"==": eq, "!=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}
 _WRAPPERS = ("parenthesized_expression", "cast_expression", "pointer_expression")
 
@@ -89,16 +91,8 @@ class Expression:
         if len(functions) != 1 or self.depth > _MAX_DEPTH:
             return self
         function = functions[0]
-        if function.name == function.owner:
-            return self
-        statements = [child for child in function.body.named_children if child.type != "comment"]
-        returns = [each for each in descendants(function.body) if each.type == "return_statement"]
-        if len(returns) != 1 or statements[-1:] != returns or not returns[0].named_children:
-            return self
-        given = text_of(returns[0].named_children[0])
-        name = given.removeprefix("&").strip()
-        stays = re.search(rf"\bstatic\b[^;]*\b{re.escape(name)}\b", text_of(function.body)) is not None
-        if len(statements) > 1 and not stays and (not given.startswith("&") or name in function.locals):
+        value = function.returned
+        if value is None:
             return self
         bindings: dict[str, Binding] = dict(zip(function.parameters, map(self.at, arguments), strict=False))
         called_as = self.node.child_by_field_name("function")
@@ -111,7 +105,6 @@ class Expression:
         elif THIS in self.bindings:
             bindings[THIS] = self.bindings[THIS]
         bindings[SITE] = call_site(self.file, self.node, self.bindings)
-        value = returns[0].named_children[0]
         return Expression(self.program, value, function.file, function, bindings, self.depth + 1).core
 
     @property
@@ -269,7 +262,7 @@ class Expression:
         if array is None or index is None:
             return None
         values, number = self.at(array).resolved, index.number
-        elements = elements_of(values.node)
+        elements = self.program.elements_of(values.node)
         if values.node.type != "initializer_list" or number is None or not 0 <= number < len(elements):
             return None
         return values.at(elements[number]).resolved
@@ -289,8 +282,7 @@ class Expression:
         base = self.at(holder).core
         while base.node.type == "subscript_expression" and (array := base.node.child_by_field_name("argument")) is not None:
             base = base.at(array).core
-        order = tuple(self.program.members.get(self.program.classes.get(base.name, ""), ()))
-        value = member_of(values.node, text_of(field), order)
+        value = self.program.member_of(values.node, text_of(field), self.program.classes.get(base.name, ""))
         return values.at(value).resolved if value is not None else None
 
     def _own_member(self, name: str) -> Expression | None:
@@ -313,11 +305,11 @@ class Expression:
     def _made(self, owner: str, member: str) -> Expression | None:
         """The value that the constructor of a class gives a member of an object, made with the arguments of this expression."""
         constructors, given = self.program.constructors.get(owner, ()), self.program.constructed.get(owner, {}).get(member)
-        # Where they are unknown, what does not depend on them is known all the same.
-        arguments = arguments_of(self.node)
         if len(constructors) != 1 or given is None or self.depth > _MAX_DEPTH:
             return None
         constructor = constructors[0]
+        # Where they are unknown, what does not depend on them is known all the same.
+        arguments = arguments_of(self.node)
         bindings: dict[str, Binding] = dict(zip(constructor.parameters, map(self.at, arguments), strict=False))
         is_object = self.program.classes.get(member) in self.program.members
         if given.type in ("argument_list", "initializer_list") and given.named_child_count == 1 and not is_object:
@@ -342,7 +334,7 @@ class Expression:
             parsed = parse_expression(size, is_c=False)
             return own.at(parsed).number if parsed is not None else None
         values = own.resolved.node
-        return len(elements_of(values)) if values.type == "initializer_list" else None
+        return len(self.program.elements_of(values)) if values.type == "initializer_list" else None
 
     @property
     def string(self) -> str | None:
@@ -387,18 +379,13 @@ class Expression:
 
     def _printed(self) -> str | None:
         """The text that the last call of `snprintf` before this place in the same function writes to a buffer."""
-        calls = [
-            arguments
-            for node in (descendants(self.function.body) if self.function is not None else ())
-            if node.type == "call_expression" and node.start_byte < self.node.start_byte
-            for name, arguments in [called(node)]
-            if name.rpartition("::")[2] in _PRINTS and arguments and text_of(arguments[0]) == self.text
-            for arguments in [arguments[_PRINTS[name.rpartition("::")[2]] :]]
-        ]
-        form = self.at(calls[-1][0]).string if calls and calls[-1] else None
+        calls = self.function.prints.get(self.text, ()) if self.function is not None else ()
+        before = bisect_left(calls, self.node.start_byte, key=lambda call: call.start_byte)
+        given = calls[before - 1].given if before else ()
+        form = self.at(given[0]).string if given else None
         if form is None:
             return None
-        values = iter([self.at(each)._as_text() for each in calls[-1][1:]])
+        values = iter([self.at(each)._as_text() for each in given[1:]])
         parts = [_formatted(part, values) for part in _FORMAT.split(form)]
         return "".join(each for each in parts if each is not None) if None not in parts else None
 
@@ -465,13 +452,6 @@ def _allocates(node: Node | None) -> bool:
     )
 
 
-def called(node: Node) -> tuple[str, list[Node]]:
-    """The name of the function that a call calls, as it is written, and the arguments."""
-    function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
-    given = [child for child in arguments.named_children if child.type != "comment"] if arguments is not None else []
-    return (text_of(function) if function is not None else ""), given
-
-
 def literal(text: str) -> int | None:
     """The value of a number in C, None if it is not a whole one."""
     digits = text.replace("'", "").lower().rstrip("ulz")
@@ -494,7 +474,9 @@ def _formatted(part: str, values: Iterator[str | None]) -> str | None:
     if part == "%%":
         return "%"
     value, width = next(values, None), part[1:].rstrip("diuslhz")
-    return value.rjust(int(width or 0), "0" if width.startswith("0") else " ") if value is not None else None
+    if value is None or len(width) > _WIDTH_DIGITS:
+        return None
+    return value.rjust(int(width or 0), "0" if width.startswith("0") else " ")
 
 
 def _calculated(first: int, operator: str, second: int) -> int | None:

@@ -8,7 +8,8 @@ from typing import NamedTuple
 from amalthea_uros._internal.records import replace
 from amalthea_uros.source.facts import CodeFacts
 from amalthea_uros.source.ports import MICROSECOND, MILLISECOND, SECOND
-from amalthea_uros.source.scope import Expression, called
+from amalthea_uros.source.scope import Expression
+from amalthea_uros.source.syntax import called
 from amalthea_uros.source.walk import BUSY_LOOP, FunctionCall
 from amalthea_uros.units import Time, time_text
 

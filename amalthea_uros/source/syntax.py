@@ -96,6 +96,13 @@ def descendants(node: Node) -> Iterator[Node]:
         waiting.extend(reversed(current.named_children))
 
 
+def called(node: Node) -> tuple[str, list[Node]]:
+    """The name of the function that a call calls, as it is written, and the arguments."""
+    function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
+    given = [child for child in arguments.named_children if child.type != "comment"] if arguments is not None else []
+    return (text_of(function) if function is not None else ""), given
+
+
 if TYPE_CHECKING:
     from tree_sitter import Node
 

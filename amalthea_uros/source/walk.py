@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 from amalthea_uros._internal.limits import SOURCE_NODES
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.source.callees import Callees
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.intervals import interval_of, interval_of_macro
 from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of, function_of_macro
-from amalthea_uros.source.scope import SITE, THIS, Binding, Expression, call_site, called
-from amalthea_uros.source.syntax import branches, descendants, is_conditional, location_of, parse_expression, text_of
+from amalthea_uros.source.scope import SITE, THIS, Binding, Expression, call_site
+from amalthea_uros.source.spans import TextSpans
+from amalthea_uros.source.syntax import branches, called, descendants, is_conditional, location_of, parse_expression, text_of
 from amalthea_uros.units import Time
 
 if TYPE_CHECKING:
@@ -127,8 +130,9 @@ class CodeWalk:
         self._threads = threads
         self._given: dict[str, Expression] = {}
         self.calls: list[FunctionCall] = []
+        self._calls_by_root: dict[CodeFunction | None, list[FunctionCall]] = defaultdict(list)
         self.seen: set[tuple[str, int]] = set()
-        self.inactive: set[tuple[str, int, int]] = set()
+        self.inactive: dict[str, set[tuple[int, int]]] = defaultdict(set)
         self.lambdas: dict[str, CodeFunction] = {}
         self.findings: list[Finding] = []
         self._left = SOURCE_NODES
@@ -136,13 +140,17 @@ class CodeWalk:
         self._names = names
         self._started: list[CodeFunction] = []
         self._relevant = relevant_functions(program, names)
+        self._callees = Callees(program.every_function())
+        self._followed = set(self._relevant.functions)
 
     def all(self) -> None:
         """Walk from code outside of functions, then from each function that no other one calls."""
         for file, root in self.program.files:
             self._children(root, _WalkPosition(file, None, {}))
+        inactive = {path: TextSpans(spans) for path, spans in self.inactive.items()}
         for group in self.program.functions.values():
-            group[:] = [function for function in group if not self._is_inactive(function)]
+            group[:] = [each for each in group if each.body.start_byte not in inactive.get(str(each.file.path), ())]
+        self._callees = Callees(self.program.every_function())
         entries = dict.fromkeys(self._thread_entries())
         for function in self.program.every_function():
             is_entry = not function.owner and function.name in ENTRIES
@@ -156,10 +164,6 @@ class CodeWalk:
         # Lambdas that are the code of threads; what they call is called by others only there.
         while self._started:
             self.function(self._started.pop(0))
-
-    def _is_inactive(self, function: CodeFunction) -> bool:
-        path, position = str(function.file.path), function.body.start_byte
-        return any(path == other and start <= position < end for other, start, end in self.inactive)
 
     def function(self, function: CodeFunction) -> None:
         """Walk through a function; the code of a thread has what it is given."""
@@ -176,12 +180,11 @@ class CodeWalk:
 
     def calls_from(self, function: CodeFunction) -> list[FunctionCall]:
         """The calls on the paths that begin with a function."""
-        found = [call for call in self.calls if call.root is function]
-        if found or function not in self._relevant.functions | frozenset(self.lambdas.values()):
+        found = self._calls_by_root[function]
+        if found or function not in self._followed:
             return found
         before = len(self.calls)
         self.function(function)
-        found = self.calls[before:]
         # They were found already on the paths of the callers.
         del self.calls[before:]
         return found
@@ -243,7 +246,7 @@ class CodeWalk:
         while current is not None:
             for child in current.named_children:
                 if child.id not in taken and child.type not in ("preproc_elif", "preproc_elifdef", "preproc_else"):
-                    self.inactive.add((str(file.path), child.start_byte, child.end_byte))
+                    self.inactive[str(file.path)].add((child.start_byte, child.end_byte))
             current = current.child_by_field_name("alternative")
 
     def _loop(self, node: Node, context: _WalkPosition) -> None:
@@ -368,7 +371,9 @@ class CodeWalk:
             name = f"lambda_in_line_{node.start_point.row + 1}"
             owner = context.function.owner if context.function is not None else ""
             declarator = node.child_by_field_name("declarator")
-            self.lambdas[text_of(node)] = function_of(name, context.file, declarator, body, owner)
+            function = function_of(name, context.file, declarator, body, owner)
+            self.lambdas[text_of(node)] = function
+            self._followed.add(function)
 
     def _expression(self, node: Node, context: _WalkPosition) -> Expression:
         return Expression(self.program, node, context.file, context.function, context.bindings)
@@ -395,20 +400,21 @@ class CodeWalk:
         self._add(name.removeprefix("::").removeprefix("std::").rpartition("this->")[2], expressions, node, context)
 
     def _add(self, name: str, arguments: tuple[Expression, ...], node: Node, context: _WalkPosition) -> None:
-        self.calls.append(
-            FunctionCall(
-                name,
-                arguments,
-                location_of(context.file, node),
-                context.stack[0] if context.stack else None,
-                context.function,
-                context.loops,
-                context.conditions,
-                context.uncertain,
-                _is_unused(node),
-                context.every,
-            )
+        root = context.stack[0] if context.stack else None
+        call = FunctionCall(
+            name,
+            arguments,
+            location_of(context.file, node),
+            root,
+            context.function,
+            context.loops,
+            context.conditions,
+            context.uncertain,
+            _is_unused(node),
+            context.every,
         )
+        self.calls.append(call)
+        self._calls_by_root[root].append(call)
 
     def _callee(self, name: str, number: int, node: Node, context: _WalkPosition) -> CodeFunction | None:
         """The function of the sources that is called: of the object's class, else the same class or file, else the only one.
@@ -423,19 +429,8 @@ class CodeWalk:
             self._expression(given, context).owner if given is not None else name.rpartition("::")[0].rpartition("::")[2]
         )
         short = name.rpartition("::")[2].rpartition(".")[2].rpartition(">")[2]
-        found = self.program.functions.get(short, [])
-        owner = context.function.owner if context.function is not None else ""
-        for close in (
-            [each for each in found if each.owner and each.owner == called_class],
-            [each for each in found if each.owner and each.owner == owner and given is None],
-            [each for each in found if each.file is context.file],
-            found,
-        ):
-            if len(close) > 1:
-                close = [each for each in close if len(each.parameters) == number]
-            if len(close) == 1:
-                return close[0]
-        return None
+        own_class = context.function.owner if context.function is not None and given is None else ""
+        return self._callees.of(short, number, (called_class, own_class), context.file)
 
     def _holder(self, node: Node, callee: CodeFunction, context: _WalkPosition) -> Binding | None:
         """The object whose method a call calls; within a method of the same class, that of the method."""

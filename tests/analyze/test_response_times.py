@@ -248,3 +248,15 @@ def test_response_times_do_not_wrap(distinct):
 def test_a_fixed_demand_beyond_all_limits():
     often = AnalysedTask(name="often", events=EventPattern(1, (0,)), demand=MultiframeDemand.constant(2**54))
     assert Interference.of([often]).window(1, 2**40) is None
+
+
+@pytest.mark.parametrize("periods", [(2**50,), (2**50, 2**50), (2**50, 2**51)])
+def test_a_demand_that_does_not_fit_into_64_bits(periods):
+    """Such as that of callbacks of a host, of which the core has no response times."""
+    endless = [
+        AnalysedTask(name=str(number), events=PeriodicEvents(period), demand=MultiframeDemand.constant(2**70))
+        for number, period in enumerate(periods)
+    ]
+    interference = Interference.of(endless)
+    assert interference.in_window(1) == len(periods) * 2**70
+    assert interference.window(1, 1) is None

@@ -124,6 +124,19 @@ def test_errors_of_am2inc_are_written_only_on_request_and_with_a_warning(tmp_pat
     assert (warning in plain.stderr, warning in like.stderr) == (False, True)
 
 
+@pytest.mark.parametrize(
+    ("name", "words"), [("INCHRON/ModelImporter.conf", "not UTF-8"), ("INCHRON", "folder cannot be created")]
+)
+def test_settings_of_importers_that_cannot_be_changed_are_refused_and_stay(tmp_path, monkeypatch, name, words):
+    settings = tmp_path / name
+    settings.parent.mkdir(exist_ok=True)
+    settings.write_bytes(b"\xff[ModelImporter]\n")
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    run = amuros("export", "--importer", "--install")
+    assert (run.returncode, words in run.stderr) == (2, True), run.stderr
+    assert settings.read_bytes() == b"\xff[ModelImporter]\n"
+
+
 def test_an_importer_is_entered_in_the_settings_in_place_of_another_one(tmp_path, monkeypatch):
     settings = tmp_path / "INCHRON" / "ModelImporter.conf"
     settings.parent.mkdir()

@@ -119,6 +119,13 @@ def test_a_part_of_what_has_no_times_is_refused(tmp_path):
         table(tmp_path, "rtt_ms\n4\n", window=("1 s", None))
 
 
+def test_reports_before_a_line_without_an_end_are_used(tmp_path):
+    report = "average delay: 0.005\n\tmin: 0.003s max: 0.006s std dev: 0.00100s window: 10\n"
+    (tmp_path / "delay.txt").write_text(report + 100_000 * "7")
+    found = measure(tmp_path / "delay.txt")
+    assert (only(found).statistics.max, [each.rule for each in found.findings]) == (6 * MILLISECOND, ["TRC002", "MEA007"])
+
+
 def test_a_line_without_an_end_leaves_nothing_measured(tmp_path):
     found = table(tmp_path, "7" * 100_000)
     assert (found.series, [each.rule for each in found.findings]) == ((), ["TRC002", "MEA005"])

@@ -5,11 +5,13 @@ import signal
 import sys
 from random import Random
 
+import fuzz_readers
 import pytest
 from effort import every
 from fuzzing import byte_mutations, cases, commands, invariants, line_mutations, sandbox
 from fuzzing.cases import Case
 from fuzzing.contradictions import contradictions
+from fuzzing.seeds import seeds
 from fuzzing.shrinking import minimal, shrunk
 from support import ROOT
 
@@ -38,6 +40,12 @@ class TestReaders:
             for seed in range(20):
                 for content in (b"", b"\xff", b"a: 1\n- 2\n"):
                     assert isinstance(mutation(Random(seed), content, b"other\n"), bytes)
+
+    @pytest.mark.parametrize("name", fuzz_readers.READERS)
+    def test_what_is_mutated_is_read_unless_it_is_mutated(self, name, tmp_path, monkeypatch):
+        monkeypatch.setenv("XDG_CONFIG_HOME", "")  # which a reader sets
+        for files in every(6, seeds(name)):
+            fuzz_readers.READERS[name](fuzz_readers.place(files, tmp_path / "case"))
 
 
 class TestShrinking:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import gzip
 import importlib
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 from random import Random
+from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 
 from templating import ROOT
 
 from amalthea_uros.services.export import export
-from amalthea_uros.trace.sinks import WRITERS, WriteOptions, open_sink
+from amalthea_uros.services.simulate import simulate
+from amalthea_uros.trace.sinks import WRITERS, open_sink
 
-Files = Mapping[str, bytes]
+Files = dict[str, bytes]
 
 _SAMPLES = ROOT / "samples"
 _CORPUS = ROOT.parent / "shared" / "corpus"
@@ -34,6 +38,21 @@ BA_ "GenMsgCycleTime" BO_ 1 10;
 """
 _MARKERS = b"A: {value: Debug.Time, unit: us}\nB: {value: Other.Value, unit: ms}\nC: {start: 0x1, end: 0x2, counter: byte 0}\n"
 _TABLE = b"start_us,end_us,valid,name\n" + b"".join(b"%d.5,%d,1,x\n" % (10 * i, 10 * i + 3) for i in range(20))
+_REPORTS = (
+    "average delay: 0.005\n\tmin: 0.004s max: 0.006s std dev: 0.00041s window: 10\n"
+    "average delay: 0.006\n\tmin: 0.003s max: 0.009s std dev: 0.00055s window: 20\n",
+    "WARNING: topic [/a] does not appear to be published yet\n"
+    "average rate: 10.003\n\tmin: 0.099s max: 0.101s std dev: 0.00041s window: 11\n",
+)
+_SETTINGS = """[tool.amuros.check]
+profile = ["timing", "inchron"]
+select = ["TIM-OVERLOAD"]
+ignore = ["XMI020"]
+fail-on = "warning"
+baseline = "baseline.json"
+targets = ["inchron"]
+"""
+_IMPORTERS = b'[General]\nfont="a"\n\n[ModelImporter]\nAmaltheaImporter\\commandline="am2inc"\nOther\\filter=x\n'
 _SOURCE = (_SAMPLES / "sources" / "int32_publisher.c").read_bytes()
 _OWN_FILES = b"""amuros: 1
 name: app
@@ -112,7 +131,7 @@ def _projects() -> Sequence[Files]:
 def _can_logs() -> Sequence[Files]:
     import can
 
-    found = [{"run.log": _LOG}]
+    found = [{"run.log": _LOG}, {"run.log.gz": gzip.compress(_LOG, mtime=0)}]
     with tempfile.TemporaryDirectory() as folder:
         for suffix in (".asc", ".blf", ".trc"):
             path = Path(folder) / f"run{suffix}"
@@ -132,14 +151,53 @@ def _traces() -> Sequence[Files]:
         ctf.zephyr_event(1000 * i, name, thread) for i, name in enumerate(6 * ("thread_switched_in", "isr_enter", "isr_exit"))
     ]
     found += [{"metadata": ctf.zephyr_metadata().encode(), "channel0_0": b"".join(events)}]
+    found += [{"run.btf.gz": traces.encoded(".btf.gz", traces.random_trace(Random(0)))}]
+    found += [_ros2_trace(order) for order in "<>"]
     with tempfile.TemporaryDirectory() as folder:
         for number, suffix in enumerate(WRITERS):
             if suffix in (".btf", ".csv"):
                 path, trace = Path(folder) / f"{number}{suffix}", traces.random_trace(Random(number))
-                with open_sink(path, trace.entities, WriteOptions()) as sink:
+                with open_sink(path, trace.entities) as sink:
                     sink.write(trace)
                 found.append({f"run{suffix}": path.read_bytes()})
     return found
+
+
+def _ros2_trace(order: str) -> Files:
+    ctf, recorded = (importlib.import_module(name) for name in ("ctf_traces", "test_ctf_reader"))
+    writer = ctf.ros2_writer(order)
+    events = recorded.ros2_events(writer)
+    packets = [writer.packet(recorded.T, events[:7], spare=64), writer.packet(recorded.T, events[7:], 1)]
+    return {"metadata": writer.metadata.encode(), "channel0_0": b"".join(packets)}
+
+
+def _archives() -> Sequence[Files]:
+    found = []
+    for number, files in enumerate(_models()):
+        archive = BytesIO()
+        with ZipFile(archive, "w", ZIP_DEFLATED if number % 2 else ZIP_STORED) as target:
+            target.writestr("ResourceContents", files["case.amxmi"])
+        found.append({"case.amxmi": archive.getvalue()})
+    return found
+
+
+def _calibrations() -> Sequence[Files]:
+    """Descriptions with traces of their simulations."""
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("bodas-test-simple", "drive-and-lift"):
+            description, trace = _SAMPLES / f"{name}.yaml", Path(folder) / f"{name}.csv"
+            simulate(description, "60 ms", trace_paths=[trace])
+            found.append({"app.yaml": description.read_bytes(), "run.csv": trace.read_bytes()})
+    return found
+
+
+def _models() -> Sequence[Files]:
+    return [*_files(_SAMPLES, "*.amxmi"), *_files(ROOT / "tests" / "data", "*.amxmi")]
+
+
+def _older_models() -> Sequence[Files]:
+    return _files(_CORPUS, "*.amxmi")
 
 
 def _recordings() -> Sequence[Files]:
@@ -153,19 +211,32 @@ def _sources() -> Sequence[Files]:
     return [*alone, *len(alone) * [{"node.c": _SOURCE, **_BUILD_FILES}]]
 
 
-_SEEDS: Mapping[str, Callable[[], Sequence[Files]]] = {
-    "amxmi": lambda: [*_files(_SAMPLES, "*.amxmi"), *_files(ROOT / "tests" / "data", "*.amxmi")],
+_SEEDS: dict[str, Callable[[], Sequence[Files]]] = {
+    "amxmi": _models,
+    "amxmi-analyzed": _models,
+    "amxmi-checked": _models,
+    "amxmi-compared": _models,
+    "amxmi-written": _models,
     "baseline": _baselines,
+    "calibration": _calibrations,
     "can": _can_logs,
     "dbc": lambda: [{"run.log": _LOG, "markers.yml": _MARKERS, "bus.dbc": _DBC}],
     "description": _descriptions,
+    "description-analyzed": _descriptions,
     "description-checked": _descriptions,
+    "editor": _descriptions,
+    "importers": lambda: [{"INCHRON/ModelImporter.conf": _IMPORTERS}],
     "iprx": _projects,
     "meta": lambda: _files(ROOT / "tests" / "hostile", "*.meta"),
+    "older-amxmi": _older_models,
+    "older-amxmi-migrated": _older_models,
     "own-files": _own_files,
-    "older-amxmi": lambda: _files(_CORPUS, "*.amxmi"),
     "recording": _recordings,
+    "ros-report": lambda: [{"delay.txt": text.encode()} for text in _REPORTS],
+    "settings": lambda: [{"pyproject.toml": _SETTINGS.encode(), "model.amxmi": b""}],
     "sources": _sources,
     "table": lambda: [{"values.csv": _TABLE}],
     "trace": _traces,
+    "trace-compared": _traces,
+    "zip": _archives,
 }

@@ -135,10 +135,12 @@ class Interference:
         for number, (task, part) in enumerate(zip(tasks, parts, strict=True), start=1):
             for key, worst, best in part:
                 row = numbers[key]
+                # With a greater demand, the rows are not used: see `is_countable`.
+                kept = min(worst, LIMIT), min(best, LIMIT)
                 if row < count:
-                    rows = rows.with_more(row, worst, best)
+                    rows = rows.with_more(row, *kept)
                 else:
-                    rows.demands[row], rows.best[row], count = worst, best, row + 1
+                    (rows.demands[row], rows.best[row]), count = kept, row + 1
                 best_rate += best / key[0]
                 greatest += worst * ((2 * LIMIT + key[1]) / key[0] + 1)
             others = others if part else (*others, task)

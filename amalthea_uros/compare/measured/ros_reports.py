@@ -45,8 +45,10 @@ def measured_report(path: Path, name: str, window: MeasurementWindow) -> Measure
     """
     window.refuse_part(path.name)
     problems = TraceProblems(path)
+    reports: list[tuple[str, TimeStatistics]] = []
     with opened_text(path, problems) as lines:
-        reports = list(_reports(lines, problems))
+        for report in _reports(lines, problems):  # the file may be damaged after some of them
+            reports.append(report)
     quantity = reports[-1][0] if reports else "duration"
     series = Series(
         kind=MeasuredKind.INTERVAL,
