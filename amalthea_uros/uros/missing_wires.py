@@ -22,7 +22,7 @@ def check_wires(members: ChainMembers, system: System, notes: Notes) -> None:
         element = members.elements[callback]
         text = f"{callback!r} receives {topic!r}, which is published here, too, but no wire is described on which it comes"
         advice = "Describe 'transport' and 'agent' of its middleware, or rename the topic if its messages come from elsewhere."
-        notes.error("APP003", text, origins.get(element.runnable or element.process), advice)
+        notes.error("APP003", text, origins.get(element.runnable or element.process or ""), advice)
 
 
 def _without_wire(topics: Topics, system: System) -> Iterator[tuple[str, str]]:
