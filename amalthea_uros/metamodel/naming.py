@@ -21,7 +21,7 @@ _PLAIN = re.compile(r"[A-Za-z0-9._*-]+").fullmatch
 
 
 class _Encoded(dict[int, str]):
-    """What stands for each character in a unique name: to encode a whole name anew takes three times as long."""
+    """The encoding of each character of a unique name: to encode a whole name anew takes three times as long."""
 
     def __missing__(self, character: int) -> str:
         # quote_plus also leaves the tilde alone, Java does not.

@@ -53,7 +53,7 @@ _OF_ACTION = "/_action/"
 
 
 def conversation(service: str) -> str:
-    """What requests and their responses have in common: the service, or the action of which it is a part."""
+    """The name that requests and their responses share: the service, or the action of which it is a part."""
     name, mark, _ = plain_topic(service).partition(_OF_ACTION)
     return f"{name}{mark}"
 

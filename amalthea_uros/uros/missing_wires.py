@@ -14,7 +14,7 @@ from amalthea_uros.uros.application.notes import Notes
 from amalthea_uros.uros.chain_members import ChainMembers, Topics
 
 
-def check_wires(members: ChainMembers, system: System, notes: Notes) -> None:
+def check_wires(members: ChainMembers, system: System, problems: Notes) -> None:
     """Report callbacks to which something described sends messages, but not over a described wire."""
     software = system.software
     origins = {each.name: each.origin for each in (*software.tasks, *software.runnables)}
@@ -22,7 +22,7 @@ def check_wires(members: ChainMembers, system: System, notes: Notes) -> None:
         element = members.elements[callback]
         text = f"{callback!r} receives {topic!r}, which is published here, too, but no wire is described on which it comes"
         advice = "Describe 'transport' and 'agent' of its middleware, or rename the topic if its messages come from elsewhere."
-        notes.error("APP003", text, origins.get(element.runnable or element.process or ""), advice)
+        problems.error("APP003", text, origins.get(element.runnable or element.process or ""), advice)
 
 
 def _without_wire(topics: Topics, system: System) -> Iterator[tuple[str, str]]:

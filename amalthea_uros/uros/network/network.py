@@ -112,7 +112,7 @@ def with_network(system: System, planned: PlannedNetwork | None, context: Assemb
 
 
 def _not_on_wire(application: Application, wire: str) -> Iterator[str]:
-    """What the middleware sends besides the messages whose sizes are described."""
+    """Sentences about messages of the middleware that are sent besides those whose sizes are described."""
     nodes = application.nodes
     if any(node.action_servers or node.action_clients for node in nodes):
         more = "acceptances and cancellations of goals, requests for results and the status"

@@ -63,7 +63,7 @@ class Use(NamedTuple):
 
 
 class _Match(NamedTuple):
-    """What a text means: the object and its unique name; and the id of the problem with it, "" if there is none."""
+    """The object that a text means, its unique name, and the id of the problem with the text, "" if there is none."""
 
     target: Element | None
     canonical: str
