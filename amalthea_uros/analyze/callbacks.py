@@ -15,7 +15,7 @@ import numpy as np
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.core_schedule import CoreSchedule, times_of_completion
-from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_table, demands_of_jobs
+from amalthea_uros.analyze.response_times.schedule import demand_cycle, demand_lead, demands_of_jobs
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.processes import CallbackResult, Metric
 from amalthea_uros.errors import UnknownError
@@ -34,6 +34,8 @@ from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.units import Time
 
 _METHOD = "response time of the process, less the minimum demand after the call"
+#: With more jobs until their demands repeat, what is executed before a call may be nothing.
+_MOST_JOBS = 100_000
 
 
 @dataclass(slots=True)
@@ -228,9 +230,10 @@ class CallSite:
         if self.is_simple and self.counter is not None:
             until = self._until()
             # Those in which counters have not started, and one of each combination after that.
-            count = len(demand_table(until, MultiframeDemand.best_of)) + first_effect(self.counter)
+            count = demand_lead(until) + demand_cycle(until) + first_effect(self.counter)
             count += lcm(demand_cycle(until), self.counter.prescaler)
-            before = min(until.best_of(job) for job in range(1, count + 1) if takes_effect(self.counter, job))
+            if count <= _MOST_JOBS:
+                before = min(until.best_of(job) for job in range(1, count + 1) if takes_effect(self.counter, job))
         elif self.is_once:
             # Whatever the call follows, it takes its own time.
             before = self._demand([replace(self.call, counter=None)]).best

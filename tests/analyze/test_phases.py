@@ -143,10 +143,19 @@ def test_loads_are_computed_once_for_all_phases(monkeypatch):
     ]
 
 
-def test_too_many_jobs_are_too_many_phases(monkeypatch):
-    monkeypatch.setattr(phases, "MAX_JOBS", 100)
+@pytest.mark.parametrize(("limit", "value"), [("MAX_JOBS", 100), ("_JOBS_PER_PROCESS", 10_000)])
+def test_what_takes_too_long_is_too_many_phases(limit, value, monkeypatch):
+    monkeypatch.setattr(phases, limit, value)
     analysis = analyze_system(describe(SAMPLE).system)
     assert times(analysis, "Message_Factor")[2] is Claim.BOUND
+
+
+def test_jobs_that_repeat_after_millions_of_others_are_not_looked_at_one_by_one():
+    text = (SAMPLE.parent / "rclc-in-executor.yaml").read_text().replace("Control, period: 20 ms", "Control, period: 4000000 s")
+    analysis = analyze(text)
+    (rare,) = (each for each in analysis.callbacks if each.name == "Control_Callback")
+    # The callback takes 150 us to 220 us.
+    assert 150 * US <= rare.response.best <= 220 * US < rare.response.worst
 
 
 THESIS = [row for problem in DESIGN.get("thesis", ()) for row in problem["rows"] if "breaks" not in row]

@@ -125,6 +125,13 @@ def test_an_executor_needs_its_task():
         ("[&quot;a&quot;,&quot;b&quot;]", "[[],&quot;b&quot;]", "TriggerCondition.sets is not of type str"),
         ("[&quot;a&quot;,&quot;b&quot;]", "3", "TriggerCondition.sets is not a list"),
         ("{&quot;name&quot;:&quot;Main loop", "{", "not valid JSON"),
+        # Such a loop would begin its next iteration before it ends the last one.
+        (
+            f"&quot;sleep&quot;:{10**10}",
+            f"&quot;sleep&quot;:{10**10},&quot;sleep_early&quot;:{10**10 + 1}",
+            "by more than its time",
+        ),
+        (f"&quot;sleep&quot;:{10**10}", "&quot;sleep&quot;:-1", "by more than its time"),
     ],
 )
 def test_an_executor_that_cannot_be_read_is_a_finding_and_its_task_unknown(before, after, message, tmp_path):

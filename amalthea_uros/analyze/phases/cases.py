@@ -40,7 +40,9 @@ from amalthea_uros.units import Time
 Cases: TypeAlias = Mapping[int, int]
 #: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.
 MAX_COMBINATIONS = 1000
-MAX_JOBS = 1_000_000
+MAX_JOBS = 320_000
+#: A solution takes as long for a process as for so many jobs.
+_JOBS_PER_PROCESS = 100
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class PhaseCases:
             return None
         combinations = list(phase_combinations(unknown))
         first = _solution(solution.context, combinations[0])
-        if count * sum(response.jobs for response in first.responses.values()) > MAX_JOBS:
+        if count * sum(response.jobs + _JOBS_PER_PROCESS for response in first.responses.values()) > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
 

@@ -103,7 +103,7 @@ def schedule(
 @lru_cache(maxsize=1024)
 def demand_table(demand: MultiframeDemand, demand_of: Callable[[MultiframeDemand, int], Time]) -> Sequence[Time]:
     """The demands of the first jobs: those before the cycle, then one cycle."""
-    return tuple(demand_of(demand, index + 1) for index in range(_lead(demand) + demand_cycle(demand)))
+    return tuple(demand_of(demand, index + 1) for index in range(demand_lead(demand) + demand_cycle(demand)))
 
 
 def demands_of_jobs(demand: MultiframeDemand, count: int, demand_of: Callable[[MultiframeDemand, int], Time]) -> Numbers:
@@ -114,7 +114,7 @@ def demands_of_jobs(demand: MultiframeDemand, count: int, demand_of: Callable[[M
     return found
 
 
-def _lead(demand: MultiframeDemand) -> int:
+def demand_lead(demand: MultiframeDemand) -> int:
     """Number of jobs before the demands repeat, because a counter starts later than its prescaler makes it repeat."""
     return max((max(0, frame.offset - frame.prescaler) for frame in demand.frames), default=0)
 
@@ -131,7 +131,7 @@ def hyperperiod(tasks: Sequence[PeriodicTask]) -> Time:
 
 def steady_state_start(tasks: Sequence[PeriodicTask]) -> Time:
     """The time at which all tasks have been released and all counters have started; the schedule repeats a hyperperiod later."""
-    return max((task.offset + _lead(task.demand) * task.period for task in tasks), default=0)
+    return max((task.offset + demand_lead(task.demand) * task.period for task in tasks), default=0)
 
 
 def fits(tasks: Sequence[PeriodicTask], until: Time) -> bool:

@@ -18,6 +18,8 @@ def flaw_of_executor(executor: Executor, system: System) -> str | None:
     called = (handle.runnable for handle in executor.handles)
     takes = (handle.take for handle in executor.handles if handle.take is not None)
     busy = () if executor.busy_wait is None else (executor.busy_wait,)
+    if not all(0 <= each.sleep_early <= each.sleep for each in (executor.loop, executor.place or executor.loop)):
+        return "a sleep can be shorter by more than its time"
     return _missing("runnable", (executor.spin, *called, *takes, *busy), system.runnables)
 
 
