@@ -42,7 +42,7 @@ LINES = {
     "platforms": 0,
     "report": 8616,
     "services": 2680,
-    "simulate": 8619,
+    "simulate": 8627,
     "source": 3561,
     "spec": 3023,
     "timing": 5732,
