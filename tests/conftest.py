@@ -2,7 +2,11 @@ import gc
 import os
 import shutil
 import signal
+import sys
+from contextlib import suppress
 from functools import partial
+from importlib import import_module
+from pathlib import Path
 from types import SimpleNamespace
 
 import compiled_code  # noqa: F401 - before what it keeps compiled
@@ -37,6 +41,16 @@ for name in ("NO_COLOR", "FORCE_COLOR", "COLUMNS", "LINES"):
 # Collecting tests makes many objects and no garbage. Later, garbage is collected as rarely as by the command. The objects are not
 # frozen: whoever reads a model counts frozen objects, which takes 40 ms for those of all tests.
 gc.disable()
+
+
+def pytest_sessionstart(session):
+    """Let the second worker import all tests from the last one on: each compiles what the other one has not yet compiled."""
+    config = session.config
+    if os.environ.get("PYTEST_XDIST_WORKER") == "gw1" and config.args == config.getini("testpaths"):
+        for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+            sys.path.insert(0, str(path.parent))
+            with suppress(pytest.skip.Exception):
+                import_module(path.stem)
 
 
 def pytest_collection_finish():

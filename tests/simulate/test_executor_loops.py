@@ -163,6 +163,29 @@ def test_machine_code_executes_loops_alike(sample, monkeypatch):
     assert results[0] == results[1]
 
 
+def test_nothing_is_compiled_where_the_machine_code_is_kept():
+    from amalthea_uros.simulate.kernel import machine_code
+
+    event = pytest.importorskip("numba.core.event")
+    machine_code.compiled()
+    with event.install_recorder("numba:compile") as recorder:
+        machine_code.compiled.__wrapped__()
+    assert recorder.buffer == []
+
+
+def test_a_part_of_the_kernel_is_compiled_once_for_all_constants():
+    from amalthea_uros.simulate.kernel.machine_code import _part
+
+    numba = pytest.importorskip("numba")
+
+    def add(first, second):
+        return first + second
+
+    part = _part(add)
+    assert numba.njit(lambda number: part(number, 1) + part(number, 2) + part(3, number))(5) == 21
+    assert part.signatures == [(numba.int64, numba.int64)]
+
+
 @pytest.mark.parametrize(
     "sample", ["robot-xrce", "robot-zenoh", "esp32-serial", "stm32-usb-cdc", "two-controllers-drive", "two-controllers-lift"]
 )
