@@ -42,7 +42,7 @@ LINES = {
     "platforms": 0,
     "report": 8642,
     "services": 2686,
-    "simulate": 8623,
+    "simulate": 8631,
     "source": 3713,
     "spec": 3023,
     "timing": 5792,
