@@ -48,7 +48,7 @@ LINES = {
     "timing": 5792,
     "trace": 4784,
     "units": 207,
-    "uros": 7866,
+    "uros": 7878,
     "validate": 3267,
     "xmi": 8601,
 }

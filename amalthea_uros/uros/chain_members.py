@@ -18,6 +18,7 @@ from amalthea_uros.perf.events import CustomEvent, Event, ProcessChange, Process
 from amalthea_uros.perf.network import OFF_WIRE_EVENT, Direction, Network, Purpose, plain_topic, request_topic, response_topic
 from amalthea_uros.perf.qualified import qualified, qualified_name
 from amalthea_uros.perf.software import Runnable
+from amalthea_uros.units import Time
 from amalthea_uros.uros.application.callbacks import Callback, body_name
 from amalthea_uros.uros.application.messages import Message
 from amalthea_uros.uros.assembly.context import AssemblyContext
@@ -36,6 +37,7 @@ class ChainElement:
     reads, writes : labels
     sends, receives : channels of messages
     taken_by : the element that takes its messages; None if it receives none
+    interval : nominal time between two executions of a callback, at least; None if it is unknown, or if this is no callback
     """
 
     process: str | None
@@ -45,6 +47,7 @@ class ChainElement:
     sends: frozenset[str] = frozenset()
     receives: frozenset[str] = frozenset()
     taken_by: str | None = None
+    interval: Time | None = None
 
 
 def chain_elements(context: AssemblyContext, callbacks: Sequence[Callback]) -> Mapping[str, ChainElement]:
@@ -103,6 +106,7 @@ def _with_messages(element: ChainElement, callback: Callback) -> ChainElement:
         sends=frozenset(message.channel for message in callback.outgoing),
         receives=frozenset([callback.incoming.channel] if callback.incoming else []),
         taken_by=notification_name(callback) if callback.incoming else None,
+        interval=callback.interval,
     )
 
 

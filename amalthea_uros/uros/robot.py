@@ -47,8 +47,9 @@ def assemble_robot(description: Description, controllers: Mapping[str, Assembly]
     system = joined({name: each.system for name, each in controllers.items()})
     _check_names(system, description, problems)
     system = replace(system, host=_host(description, controllers, system, problems))
-    members = members_together((each.members.of_part(name) for name, each in controllers.items()), system.network)
-    check_wires(members, system, problems)
+    parts = [each.members.of_part(name) for name, each in controllers.items()]
+    members = members_together(parts, system.network)
+    check_wires(members, parts, system, problems)
     system = with_demands(system, members, description, problems)
     if problems.has_errors:
         raise problems.refusal()

@@ -47,7 +47,7 @@ def assembled_system(
     system = replace(system, network=replace(system.network, waits=tuple(waits)))
     check_shared_priorities(system, context.tasks, notes, context.priority_scale)
     members = ChainMembers(elements, Topics.of(callbacks, system.network))
-    check_wires(members, system, notes)
+    check_wires(members, [members], system, notes)
     system = with_demands(system, members, description, notes)
     demanded = (*system.constraints.requirements, *deadlines(context.executors, callbacks))
     return AssembledSystem(replace(system, constraints=replace(system.constraints, requirements=demanded)), members)

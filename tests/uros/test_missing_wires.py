@@ -1,0 +1,42 @@
+"""What a controller receives is stated at its subscription, unless something described sends it: then it needs a wire."""
+
+import pytest
+
+import amalthea_uros as amuros
+from amalthea_uros.uros.described import describe_text
+
+CONTROLLER = """
+amuros: 1
+name: one
+hardware: {platform: single-core}
+middleware:
+  executor: {name: E, EXECUTOR}
+application:
+  nodes:
+    - name: n
+      publishers: [{topic: state, message_size: 8 B, reliability: best-effort}]
+      timers: [{name: Publish, period: 100 ms, execution_time: 40 us, publishes: [state]}]
+      subscriptions:
+        - {name: On_State, topic: state, rate: 10 Hz, message_size: 8 B, reliability: best-effort, execution_time: 30 us}
+"""
+PERIODIC, LOOP = "period: 5 ms, execution_time: 100 us", "loop: {spin_some: 5 ms, sleep: 1 ms}, execution_time: {base: 20 us}"
+REFUSED = "'On_State' receives 'state', which is published here, too, but no wire is described on which it comes"
+
+
+@pytest.mark.parametrize(("executor", "rate"), [(PERIODIC, "9 Hz"), (PERIODIC, "1 Hz"), (LOOP, "10 Hz"), (LOOP, "100 Hz")])
+def test_own_messages_are_not_taken_as_stated(executor, rate):
+    # Sent are 10 in a second; in a loop, each of them counts when it comes.
+    with pytest.raises(amuros.ReadError, match=REFUSED):
+        describe_text(CONTROLLER.replace("EXECUTOR", executor).replace("10 Hz", rate))
+
+
+@pytest.mark.parametrize("rate", ["10 Hz", "50 Hz"])
+def test_own_messages_that_are_no_more_than_the_jobs_in_which_they_are_due(rate):
+    described = describe_text(CONTROLLER.replace("EXECUTOR", PERIODIC).replace("10 Hz", rate))
+    assert "On_State" in described.assembly.system.processes
+
+
+def test_two_publishers_send_more_than_either():
+    more = "timers: [{name: Other, period: 100 ms, execution_time: 40 us, publishes: [state]}, "
+    with pytest.raises(amuros.ReadError, match=REFUSED):
+        describe_text(CONTROLLER.replace("EXECUTOR", PERIODIC).replace("timers: [", more))
