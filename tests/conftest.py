@@ -48,7 +48,8 @@ def pytest_sessionstart(session):
     config = session.config
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw1" and config.args == config.getini("testpaths"):
         for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
-            sys.path.insert(0, str(path.parent))
+            if sys.path[0] != str(path.parent):
+                sys.path.insert(0, str(path.parent))
             with suppress(pytest.skip.Exception):
                 import_module(path.stem)
 
