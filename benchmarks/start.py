@@ -5,8 +5,8 @@ compiled before, as those of an installed package are. With the folder of anothe
 commands take turns with the present ones, as the figures before a change.
 
 The unit is measured with one thread of OpenBLAS, to which the commands limit numpy, and with a thread for each processor, as numpy
-has it by itself: on an idle computer these wait busily, so that the unit is longer than on a busy one. Multiples are those of one
-thread. The unit contains pydantic, a library of amuros when the targets were set; the extra `bench` has it.
+has it by itself: on an idle computer these wait busily, so that the unit is longer than on a busy one. The unit contains pydantic, a
+library of amuros when the targets were set; the extra `bench` has it.
 """
 
 from __future__ import annotations
@@ -49,10 +49,11 @@ def main() -> None:
     least = {call: min(each[call] for each in rounds) for call in calls}
     for name in UNITS:
         print(f"{name}: {least[name, ROOT]:.2f} s of CPU time")
-    unit = least[ONE_THREAD, ROOT]
+    one, more = (least[name, ROOT] for name in UNITS)
     for name in COMMANDS:
-        now, *before = (f"{least[name, root]:.2f} s, {least[name, root] / unit:.1f} times the imports" for root in roots)
-        print(f"{name}: {now}{''.join(f'; before {each}' for each in before)}")
+        now, *before = (least[name, root] for root in roots)
+        times = f"{now / one:.1f} times the imports with one thread, {now / more:.1f} times with more"
+        print(f"{name}: {now:.2f} s, {times}{''.join(f'; before {each:.2f} s' for each in before)}")
 
 
 def _cpu(words: list[str], folder: str, name: str, root: Path) -> float:
