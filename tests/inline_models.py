@@ -112,3 +112,19 @@ class InlineModels:
     def messages(self, kind):
         """What was noted of one kind."""
         return [note.message for note in self.notes if note.kind == kind]
+
+
+#: The head of a robot: everything takes the same time always, and each loop waits whenever a message arrives.
+LOOPING_CONTROLLER = """
+amuros: 1
+name: robot
+controllers:
+  - name: a
+    hardware: &hardware {platform: single-core, frequency: 1 GHz}
+    middleware: &middleware
+      executor: {name: E, priority: 1, loop: {spin: 1 s}, execution_time: {base: 10 us, per_message: 5 us}}
+      limits: {RMW_UXRCE_MAX_HISTORY: 64}
+      reliable: {waits: false}
+      transport: {udp: {bitrate: 100 Mbit/s, latency: 2 ms}}
+      agent: {to_controller: 500 us, to_host: 500 us, acknowledgement: 500 us}
+"""

@@ -2,6 +2,7 @@
 
 import pytest
 import yaml
+from inline_models import LOOPING_CONTROLLER
 
 import amalthea_uros as amuros
 from amalthea_uros.errors import ReadError
@@ -9,19 +10,9 @@ from amalthea_uros.timing.basics.quantities import ChainQuantity
 from amalthea_uros.units import MILLISECOND
 from amalthea_uros.uros.described import describe_text
 
-#: Everything takes the same time always, and each loop waits whenever a message arrives.
-CONTROLLERS = """
-amuros: 1
-name: moving
-controllers:
-  - name: a
-    hardware: &hardware {platform: single-core, frequency: 1 GHz}
-    middleware: &middleware
-      executor: {name: E, priority: 1, loop: {spin: 1 s}, execution_time: {base: 10 us, per_message: 5 us}}
-      limits: {RMW_UXRCE_MAX_HISTORY: 64}
-      reliable: {waits: false}
-      transport: {udp: {bitrate: 100 Mbit/s, latency: 2 ms}}
-      agent: {to_controller: 500 us, to_host: 500 us, acknowledgement: 500 us}
+CONTROLLERS = (
+    LOOPING_CONTROLLER
+    + """\
     application:
       nodes:
         - name: n
@@ -42,6 +33,7 @@ host:
   executors: [{name: X, computer: pc, type: single-threaded, thread: {policy: fifo, priority: 10, core: 0}}]
   nodes: [{name: h, executor: X, subscriptions: [{name: Show, topic: move/_action/feedback, execution_time: 1 ms}]}]
 """
+)
 
 #: Of the host: it sends goals, gets their results, and shows feedback.
 TIMER = {"name": "T", "period": "500 ms", "execution_time": "1 ms", "calls": ["move/_action/send_goal"]}

@@ -127,7 +127,7 @@ def test_a_topic_that_is_out_of_place(author, path, rule, message):
 
 
 def test_own_messages_without_a_transport_are_refused(author):
-    # Stated are 4 Hz: nothing says that the messages of `drive` come so, and how late.
+    # The subscriptions state 4 Hz, but `drive` publishes whenever it is called, and the time on the wire is unknown.
     text = TEXT.format(path="/cmd_vel, drive", executor=LOOP, transport="", stop="writes: [stopped]", own="odom")
     refused = [message for _, rule, message in author.findings(text) if rule == "APP003"]
     assert refused == [

@@ -2,6 +2,7 @@
 
 import pytest
 import yaml
+from inline_models import LOOPING_CONTROLLER
 
 import amalthea_uros as amuros
 from amalthea_uros.errors import ReadError
@@ -10,19 +11,9 @@ from amalthea_uros.units import MICROSECOND, MILLISECOND, NANOSECOND
 from amalthea_uros.uros.described import describe_text
 
 QUANTITY = ChainQuantity.REDUCED_REACTION_TIME
-#: Everything takes the same time always, and each loop waits whenever a message arrives.
-CONTROLLERS = """
-amuros: 1
-name: adding
-controllers:
-  - name: a
-    hardware: &hardware {platform: single-core, frequency: 1 GHz}
-    middleware: &middleware
-      executor: {name: E, priority: 1, loop: {spin: 1 s}, execution_time: {base: 10 us, per_message: 5 us}}
-      limits: {RMW_UXRCE_MAX_HISTORY: 64}
-      reliable: {waits: false}
-      transport: {udp: {bitrate: 100 Mbit/s, latency: 2 ms}}
-      agent: {to_controller: 500 us, to_host: 500 us, acknowledgement: 500 us}
+CONTROLLERS = (
+    LOOPING_CONTROLLER
+    + """\
     application:
       nodes:
         - name: n
@@ -37,6 +28,7 @@ controllers:
 host: {ros: humble, computers: [{name: pc}], latency: 2 ms}
 chains: [{name: whole, path: [a_Ask, add/request, b_add, add/response, a_Got]}]
 """
+)
 
 #: The service is on the host.
 HOST = """
