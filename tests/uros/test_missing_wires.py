@@ -40,3 +40,29 @@ def test_two_publishers_send_more_than_either():
     more = "timers: [{name: Other, period: 100 ms, execution_time: 40 us, publishes: [state]}, "
     with pytest.raises(amuros.ReadError, match=REFUSED):
         describe_text(CONTROLLER.replace("EXECUTOR", PERIODIC).replace("timers: [", more))
+
+
+HOST = """
+host:
+  ros: humble
+  computers: [{name: pc}]
+  latency: 2 ms
+  executors: [{name: X, computer: pc, type: single-threaded, thread: {policy: fifo, priority: 10, core: 0}}]
+  nodes: [{name: h, executor: X, timers: [{name: Send, period: 20 ms, execution_time: 1 ms, SENDS}]}]
+"""
+RECEIVES = "subscriptions: [{name: On_Wish, topic: /wish, rate: 10 Hz, message_size: 8 B, execution_time: 30 us}]"
+SERVES = "services: [{name: add, rate: 10 Hz, request_size: 8 B, response_size: 8 B, execution_time: 30 us}]"
+
+
+@pytest.mark.parametrize("executor", [PERIODIC, LOOP])
+@pytest.mark.parametrize(
+    ("part", "sends", "refused"),
+    [
+        (RECEIVES, "publishes: [wish]", "'On_Wish' receives 'wish', which is published here, too"),
+        (SERVES, "calls: [add]", "'add' receives 'add/request', which is published here, too"),
+    ],
+)
+def test_messages_of_the_host_need_a_wire(executor, part, sends, refused):
+    controller = CONTROLLER.partition("      publishers:")[0].replace("EXECUTOR", executor)
+    with pytest.raises(amuros.ReadError, match=refused):
+        describe_text(f"{controller}      {part}\n{HOST.replace('SENDS', sends)}")
