@@ -37,7 +37,8 @@ class ChainElement:
     reads, writes : labels
     sends, receives : channels of messages
     taken_by : the element that takes its messages; None if it receives none
-    interval : nominal time between two executions of a callback, at least; None if it is unknown, or if this is no callback
+    interval : nominal time between two executions of a callback, at least; None if it is unknown, as where it sends in all activations
+        of its task, or if this is no callback
     """
 
     process: str | None
@@ -106,7 +107,7 @@ def _with_messages(element: ChainElement, callback: Callback) -> ChainElement:
         sends=frozenset(message.channel for message in callback.outgoing),
         receives=frozenset([callback.incoming.channel] if callback.incoming else []),
         taken_by=notification_name(callback) if callback.incoming else None,
-        interval=callback.interval,
+        interval=callback.interval if callback.in_executor or callback.runs_when_due or not callback.outgoing else None,
     )
 
 

@@ -36,6 +36,14 @@ def test_own_messages_that_are_no_more_than_the_jobs_in_which_they_are_due(rate)
     assert "On_State" in described.assembly.system.processes
 
 
+def test_a_publisher_that_runs_in_all_activations_of_its_task_sends_more_than_its_period_says():
+    more = CONTROLLER.replace("EXECUTOR", PERIODIC).replace(
+        "period: 100 ms,", "period: 100 ms, runs_in: own-task, runs_when: activated,"
+    )
+    with pytest.raises(amuros.ReadError, match=REFUSED):
+        describe_text(more.replace("  executor: {name", "  task_periods: [5 ms, 20 ms]\n  executor: {name"))
+
+
 def test_two_publishers_send_more_than_either():
     more = "timers: [{name: Other, period: 100 ms, execution_time: 40 us, publishes: [state]}, "
     with pytest.raises(amuros.ReadError, match=REFUSED):
