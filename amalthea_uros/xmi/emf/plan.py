@@ -15,13 +15,13 @@ from amalthea_uros.xmi.emf.data_types import DataType, ValueCache, data_type_of
 #: Prefix of class names in `xsi:type`.
 TYPE_PREFIX = "am:"
 
-#: The number of waves in which references are resolved.
-WAVES = 3
+#: The number of waves in which references are resolved, and that of references to namespaces.
+WAVES, NAMESPACES = 3, 0
 
 
 def wave_of(target: type[Element]) -> int:
     """The wave of references to a class: names of members of a namespace need the namespace, those of call arguments the call."""
-    return 0 if target is classes.Namespace else 2 if issubclass(classes.CallArgument, target) else 1
+    return NAMESPACES if target is classes.Namespace else 2 if issubclass(classes.CallArgument, target) else 1
 
 
 class FeaturePlan:

@@ -6,8 +6,8 @@ also of attributes, and beyond line 65,535, where libxml2 stops counting.
 
 from __future__ import annotations
 
-from array import array
-from collections.abc import Callable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -25,7 +25,7 @@ from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
 from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import connect, disconnect
 from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModel, read_header
-from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, WAVES, ClassPlan, FeaturePlan, plans
+from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans
 from amalthea_uros.xmi.emf.problems import CollectedFinding, FindingCollector
 
 _KEPT = "Unknown content is ignored, but preserved when the file is saved."
@@ -39,9 +39,9 @@ StartHandler = Callable[[str, dict[str, str]], None]
 EndHandler = Callable[[str], None]
 
 
-#: References to be resolved when all documents are read: the object that refers, and the feature. Until then the instance dictionary
-#: of the object has the text of an attribute, or the list of the ids of `href` elements. A plain tuple, because many are made.
-PendingReference = tuple[Element, FeaturePlan]
+#: References to be resolved when all documents are read, by feature: the objects that refer. Until then the instance dictionary of such
+#: an object has the text of an attribute, or the list of the ids of `href` elements.
+PendingReferences = Mapping[FeaturePlan, list[Element]]
 
 #: An open element: its object (None for an `href` element), what was read of it so far (its instance dictionary, with the texts of
 #: its references until they are resolved), its possible child elements, and its index in document order (else -1). A plain tuple,
@@ -54,7 +54,8 @@ class ReadResult(NamedTuple):
 
     Attributes
     ----------
-    references, referables : by the wave in which they are resolved; referables are objects that can be referred to
+    references, hrefs : references that are stated by attributes, and by `href` elements
+    referables : objects that can be referred to, by class
     xmi_ids : the `xmi:id` of every object that has one
     href_content : what is inside an `href` element, by the object that refers, the feature and the number of the element
     href_types : the classes that `href` elements state, by their texts
@@ -62,8 +63,9 @@ class ReadResult(NamedTuple):
     """
 
     document: Document
-    references: Sequence[list[PendingReference]]
-    referables: Sequence[list[Element]]
+    references: PendingReferences
+    hrefs: PendingReferences
+    referables: Mapping[ClassPlan, list[Element]]
     xmi_ids: list[tuple[Element, str]]
     href_content: Mapping[tuple[Element, str, int], list[str]]
     href_types: Mapping[str, str]
@@ -119,12 +121,14 @@ class _ModelReader:
         self.parser = parser
         self.header: ModelHeader | None = None
         self.elements: list[Element] = []
-        self.starts = array("q")
-        self.ends = array("q")
+        # Lists, because an array converts each number, which takes four times as long.
+        self.starts: list[int] = []
+        self.ends: list[int] = []
         #: The open elements; an `href` element has no object of its own.
         self.stack: list[Frame] = []
-        self.references: Sequence[list[PendingReference]] = [[] for _ in range(WAVES)]
-        self.referables: Sequence[list[Element]] = [[] for _ in range(WAVES)]
+        self.references: defaultdict[FeaturePlan, list[Element]] = defaultdict(list)
+        self.hrefs: defaultdict[FeaturePlan, list[Element]] = defaultdict(list)
+        self.referables: defaultdict[ClassPlan, list[Element]] = defaultdict(list)
         self.xmi_ids: list[tuple[Element, str]] = []
         #: Comments and the like, until the part that follows them is read.
         self.pending_extras: dict[Element, list[str]] = {}
@@ -174,7 +178,7 @@ class _ModelReader:
         document.namespaces = header.namespaces
         findings = [collected.finding(self.path, source) for collected in self.collector]
         return ReadResult(
-            document, self.references, self.referables, self.xmi_ids, self.href_content, self.href_types, findings
+            document, self.references, self.hrefs, self.referables, self.xmi_ids, self.href_content, self.href_types, findings
         )
 
     @cached_property
@@ -254,7 +258,7 @@ class _ModelReader:
             add_start(parser.CurrentByteIndex)
             add_end(0)
             if plan.wave is not None:
-                referables[plan.wave].append(element)
+                referables[plan].append(element)
             known = plan.attributes
             for key, value in attributes.items():
                 attribute = known.get(key)
@@ -265,7 +269,7 @@ class _ModelReader:
                         self.unknown_attribute(element, plan, key, value)
                 elif attribute.is_reference:
                     if value and not value.isspace():
-                        references[attribute.wave].append((element, attribute))
+                        references[attribute].append(element)
                         values[attribute.name] = value
                 elif attribute.parsed is None:
                     values[attribute.name] = value
@@ -307,7 +311,7 @@ class _ModelReader:
         texts = held.get(feature.name)
         if texts is None:
             texts = held[feature.name] = []
-            self.references[feature.wave].append((holder, feature))
+            self.hrefs[feature].append(holder)
         elif isinstance(texts, str) or not feature.many:
             self.start_duplicate(feature)
             return

@@ -7,7 +7,7 @@ text, so that nothing is lost and everything else can continue.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
@@ -22,9 +22,9 @@ from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
-from amalthea_uros.xmi.emf.plan import WAVES, FeaturePlan, plans, reference_texts
+from amalthea_uros.xmi.emf.plan import NAMESPACES, WAVES, FeaturePlan, plans, reference_texts
 from amalthea_uros.xmi.emf.problems import location, refusal
-from amalthea_uros.xmi.emf.reader import PendingReference, ReadResult
+from amalthea_uros.xmi.emf.reader import ReadResult
 
 #: Of objects with the same name, so many are listed.
 MAX_PLACES = 12
@@ -45,9 +45,8 @@ def resolve(results: Sequence[ReadResult], linked: Mapping[str, Element]) -> lis
     """
     resolver = _Resolver(results, linked)
     for wave in range(WAVES):
-        resolver.index(chain.from_iterable(result.referables[wave] for result in results))
-        for result in results:
-            resolver.link_all(result, result.references[wave])
+        resolver.index(wave)
+        resolver.link_all(wave)
     for result in results:
         resolver.check_xmi_ids(result)
     return resolver.findings()
@@ -73,11 +72,11 @@ class _Match(NamedTuple):
 class _Resolver:
     def __init__(self, results: Sequence[ReadResult], linked: Mapping[str, Element]) -> None:
         self.results = results
+        self.numbers = {result.document: number for number, result in enumerate(results)}
         self.by_id: dict[str, Element] = dict(linked)
         #: Ids that several objects share; a reference means the first one in its own document.
         self.shared: dict[str, list[Element]] = {}
-        self.suffixes: dict[type[Element], str] = {}
-        self.in_namespace = {holder for result in results for holder, *_ in result.references[0]}
+        self.in_namespace = {holder for _, _, holders in self.pending(NAMESPACES) for holder in holders}
         self.proxies: dict[tuple[str, type[Element]], Element] = {}
         self.problems: dict[tuple[str, str], list[Use]] = {}
         #: What the texts that are no unique names mean, each looked up once, because thousands of objects may have the same name.
@@ -86,34 +85,50 @@ class _Resolver:
         self.listed: Counter[Document] = Counter()
         self.suggestions = Suggestions()
 
-    def index(self, elements: Iterable[Element]) -> None:
-        """Enter objects under their unique names."""
+    def index(self, wave: int) -> None:
+        """Enter the objects whose names are known in a wave under these."""
         self.matches.clear()
-        by_id, in_namespace, suffixes = self.by_id, self.in_namespace, self.suffixes
-        for element in elements:
-            cls = type(element)
-            suffix = suffixes.get(cls)
-            if suffix is None:
-                suffix = suffixes[cls] = "" if has_prefix(cls) else TYPE_MARK + cls.__name__
-            # The usual case; the general function takes three times as long.
-            is_usual = suffix and element not in in_namespace
-            name = encode(element.__dict__.get("name")) + suffix if is_usual else unique_name(element)
-            first = by_id.setdefault(name, element)
-            if first is not element:
-                self.shared.setdefault(name, [first]).append(element)
+        by_id, in_namespace = self.by_id, self.in_namespace
+        for plan, elements in chain.from_iterable(result.referables.items() for result in self.results):
+            if plan.wave != wave:
+                continue
+            suffix = TYPE_MARK + plan.cls.__name__
+            is_usual = not has_prefix(plan.cls)
+            for element in elements:
+                # The usual case; the general function takes three times as long.
+                is_short = is_usual and element not in in_namespace
+                name = encode(element.__dict__.get("name")) + suffix if is_short else unique_name(element)
+                first = by_id.setdefault(name, element)
+                if first is not element:
+                    self.shared.setdefault(name, [first]).append(element)
 
-    def link_all(self, result: ReadResult, references: list[PendingReference]) -> None:
+    def pending(self, wave: int) -> Iterator[tuple[ReadResult, FeaturePlan, list[Element]]]:
+        """The references of a wave: the objects that refer by a feature in a file."""
+        for result in self.results:
+            for feature, holders in chain(result.references.items(), result.hrefs.items()):
+                if feature.wave == wave:
+                    yield result, feature, holders
+
+    def link_all(self, wave: int) -> None:
         """Assign the targets of references."""
-        by_id, shared, document, is_single = self.by_id, self.shared, result.document, len(self.results) == 1
-        for holder, feature in references:
-            held = holder.__dict__
-            text = held[feature.name]
-            # The usual case, one id in an attribute that names an object of the file.
-            target = None if feature.many or type(text) is list or text in shared else by_id.get(text)
-            if target is not None and isinstance(target, feature.target) and (is_single or target.document is document):
-                held[feature.name] = target
-            else:
-                self.link(result, holder, feature, text)
+        by_id, shared, is_single = self.by_id, self.shared, len(self.results) == 1
+        for result, feature, holders in self.pending(wave):
+            name, expected, document = feature.name, feature.target, result.document
+            is_usual = not feature.many and holders is result.references.get(feature)
+            for holder in holders:
+                held = holder.__dict__
+                text = held[name]
+                # The usual case, one id in an attribute that names an object of the file.
+                target = by_id.get(text) if is_usual else None
+                if (
+                    target is not None
+                    and isinstance(target, expected)
+                    and (is_single or target.document is document)
+                    and not (shared and text in shared)
+                ):
+                    held[name] = target
+                else:
+                    self.link(result, holder, feature, text)
 
     def link(self, result: ReadResult, holder: Element, feature: FeaturePlan, given: str | list[str]) -> None:
         """Assign the targets of one object; note if the form (attribute or `href`) is not the one that EMF would write.
@@ -244,7 +259,7 @@ class _Resolver:
         found = [finding for result in self.results for finding in result.findings]
         elsewhere: dict[Document, list[tuple[str, Use]]] = {}
         for (rule, text), uses in self.problems.items():
-            document, holder, feature, is_href = uses[0]
+            document, holder, feature, is_href = min(uses, key=self.position)
             hint = self.near(text) if rule == "XMI020" else ""
             if rule == "XMI020" and is_href and not hint:
                 for use in uses:
@@ -257,8 +272,15 @@ class _Resolver:
         paths = [result.document.path for result in self.results]
         return sorted(found, key=lambda f: _file_order(f, paths))
 
+    def position(self, use: Use) -> tuple[int, int]:
+        """The order of uses: the number of the file, and the offset of the object."""
+        source = use.document.source
+        assert source
+        return self.numbers[use.document], source.byte_starts[source.index[use.holder]]
+
     def missing_files(self, document: Document, uses: list[tuple[str, Use]]) -> Finding:
         """One finding for all references from a document to files that were not loaded."""
+        uses = sorted(uses, key=lambda use: self.position(use[1]))
         texts = list(dict.fromkeys(text for text, _ in uses))
         shown = ", ".join(map(repr, texts[:3])) + (f" and {len(texts) - 3} more" if len(texts) > 3 else "")
         message = f"{counted(len(uses), 'reference')} to {counted(len(texts), 'object')} in files that were not loaded: {shown}"
