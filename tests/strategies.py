@@ -16,8 +16,8 @@ from amalthea_uros.metamodel.defaults import enum_class
 from amalthea_uros.metamodel.factfile import FeatureKind
 from amalthea_uros.metamodel.features import features_of
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.metamodel.versions import facts, supported_versions
-from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.reader import read
 from amalthea_uros.xmi.emf.references import resolve
 

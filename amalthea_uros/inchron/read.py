@@ -15,7 +15,7 @@ from amalthea_uros.inchron.facts import NAMESPACE, features, is_a, metamodel, on
 from amalthea_uros.inchron.objects import ProjectObject, parsed
 from amalthea_uros.inchron.project import Project
 from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind
-from amalthea_uros.metamodel.source import SourceText
+from amalthea_uros.metamodel.source import FileText, SourceText
 from amalthea_uros.xmi.emf.files import read_text
 from amalthea_uros.xmi.emf.problems import MAX_DEPTH, has_doctype, location, malformed, too_deep
 
@@ -37,12 +37,12 @@ def read_project(path: Path) -> Project:
     ------
     ReadError : the file cannot be read, is no project, or contains values that are wrong; carries a finding for each.
     """
-    return parse_project(path, read_text(path).text)
+    return _Reader(path, read_text(path)).project()
 
 
 def parse_project(path: Path, text: str) -> Project:
     """The project of a text; raises as `read_project`."""
-    return _Reader(path, text).project()
+    return _Reader(path, FileText(text)).project()
 
 
 class _Reader:
@@ -53,10 +53,10 @@ class _Reader:
     stack : the open elements: objects, texts of attributes with several values, or None for what is left out
     """
 
-    def __init__(self, path: Path, text: str) -> None:
+    def __init__(self, path: Path, file: FileText) -> None:
         self.path = path
-        self.text = text
-        self.source = SourceText(text)
+        self.file = file
+        self.source = SourceText(file)
         self.prefixes: dict[str, str] = {}
         self.stack: list[ProjectObject | tuple[FeatureFact, list[str]] | None] = []
         self.names: list[tuple[str, int]] = []
@@ -75,10 +75,10 @@ class _Reader:
     def project(self) -> Project:
         """Read everything."""
         try:
-            self.parser.Parse(self.text.encode(), True)
+            self.parser.Parse(self.file.utf8, True)
         except expat.ExpatError as error:
             opened = self.names[-1] if self.names else None
-            raise malformed(self.path, self.text, error, self.parser.ErrorByteIndex, opened) from None
+            raise malformed(self.path, self.file, error, self.parser.ErrorByteIndex, opened) from None
         self.resolve()
         model = self.root["model"] if self.root is not None and not self.errors else None
         if not self.errors and (model is None or model.kind != "Model"):
@@ -110,13 +110,13 @@ class _Reader:
 
     def doctype(self, *_arguments: object) -> None:
         """Refuse a document type."""
-        raise has_doctype(self.path, self.text, self.parser.CurrentByteIndex)
+        raise has_doctype(self.path, self.file, self.parser.CurrentByteIndex)
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         """Begin an element."""
         offset = self.parser.CurrentByteIndex
         if len(self.stack) > MAX_DEPTH:
-            raise too_deep(self.path, self.text, offset)
+            raise too_deep(self.path, self.file, offset)
         self.names.append((tag.rpartition(" ")[2], offset))
         if not self.stack:
             self.begin(tag)

@@ -31,6 +31,44 @@ def attributes_of_tag(text: str, start: int) -> Iterator[re.Match[str]]:
         at = attribute.end()
 
 
+class FileText:
+    """The characters of a file and how they were stored.
+
+    Most files are ASCII and are read from their bytes alone; the characters are made when they are asked for.
+
+    Parameters
+    ----------
+    text : the characters, or the bytes if these are characters in UTF-8
+    encoding : a Python codec name ("utf-8-sig" with a byte order mark)
+    zip_entry : name of the entry if the file was a ZIP, else None
+    """
+
+    __slots__ = ("_text", "encoding", "zip_entry")
+
+    def __init__(self, text: str | bytes, encoding: str = "utf-8", zip_entry: str | None = None) -> None:
+        self._text = text
+        self.encoding = encoding
+        self.zip_entry = zip_entry
+
+    @property
+    def text(self) -> str:
+        """The characters."""
+        if isinstance(self._text, bytes):
+            # Instead of the bytes, since both would take twice the memory as long as the model is open.
+            self._text = self._text.decode()
+        return self._text
+
+    @property
+    def utf8(self) -> bytes:
+        """The characters in UTF-8. To encode them takes long and, since Python keeps the result, as much memory as the text."""
+        return self._text if isinstance(self._text, bytes) else self._text.encode()
+
+    @property
+    def is_ascii(self) -> bool:
+        """Whether each character is one byte."""
+        return self._text.isascii()
+
+
 class Position(NamedTuple):
     """Line and column, both counted from 1; columns count characters."""
 
@@ -52,23 +90,24 @@ class SourceText:
 
     Attributes
     ----------
-    text : the decoded file
+    file : its characters and how they were stored
     version : AMALTHEA version that it declares
-    encoding : its character encoding, a Python codec name ("utf-8-sig" with a byte order mark)
-    zip_entry : name of the entry if the file was a ZIP, else None
     prefixes : names of the special attributes
     elements : every object read from the text, in its order
     byte_starts, byte_ends : see `start` and `end`, but counted in bytes of UTF-8
     """
 
-    text: str
+    file: FileText
     version: str = ""
-    encoding: str = "utf-8"
-    zip_entry: str | None = None
     prefixes: Prefixes = field(default=Prefixes())
     elements: Sequence[Element] = ()
     byte_starts: Sequence[int] = ()
     byte_ends: Sequence[int] = ()
+
+    @cached_property
+    def text(self) -> str:
+        """The characters of the file."""
+        return self.file.text
 
     def start(self, place: int) -> int:
         """Offset in `text` of the start tag of the object at a place in `elements`."""
@@ -85,7 +124,7 @@ class SourceText:
 
     @cached_property
     def _is_ascii(self) -> bool:
-        return self.text.isascii()
+        return self.file.is_ascii
 
     @cached_property
     def _shifts(self) -> tuple[list[int], list[int]]:

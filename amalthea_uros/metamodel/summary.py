@@ -114,7 +114,7 @@ def _document(document: Document) -> DocumentSummary:
         version=document.version,
         objects=sum(1 for _ in document.root.walk()),
         characters=len(source.text) if source else 0,
-        compressed=bool(source and source.zip_entry),
+        compressed=bool(source and source.file.zip_entry),
         migrated_from=document.migrated_from,
     )
 

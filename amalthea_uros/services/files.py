@@ -41,7 +41,8 @@ def save_text(path: StrPath, text: str) -> None:
 
 def save_texts(texts: Mapping[Path, str]) -> None:
     """Write all files whole, or none; WriteError if one of them cannot be written."""
-    from amalthea_uros.xmi.emf.files import FileText, write_texts
+    from amalthea_uros.metamodel.source import FileText
+    from amalthea_uros.xmi.emf.files import write_texts
 
     write_texts({path: FileText(text) for path, text in texts.items()})
 

@@ -68,7 +68,7 @@ def _format(path: Path, write: bool) -> Iterable[FileChange]:
     source = document.source
     assert source is not None
     # The canonical form is UTF-8 without a byte order mark, as EMF writes it.
-    before = "\ufeff" + source.text if source.encoding == "utf-8-sig" else source.text
+    before = "\ufeff" + source.text if source.file.encoding == "utf-8-sig" else source.text
     after = document_text(document, canonical=True)
     if write and (after != before or path == STANDARD_INPUT):
         save(model, STANDARD_OUTPUT if path == STANDARD_INPUT else None, canonical=True)

@@ -14,8 +14,9 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.metamodel.versions import newest_version
-from amalthea_uros.xmi.emf.files import SUFFIX, FileText, is_model_name, not_readable, read_text
+from amalthea_uros.xmi.emf.files import SUFFIX, is_model_name, not_readable, read_text
 from amalthea_uros.xmi.emf.reader import ReadResult, read
 from amalthea_uros.xmi.emf.references import resolve
 from amalthea_uros.xmi.emf.versions import is_older, version_of
@@ -56,7 +57,7 @@ def _read(paths: Iterable[Path], max_size: int) -> tuple[list[ReadResult], dict[
     for path in paths:
         try:
             content = read_text(path, max_size)
-            if is_older(version_of(content.text)):
+            if is_older(version_of(content.utf8)):
                 older.append((path, content))
             else:
                 results.append(read(path, content))

@@ -10,8 +10,9 @@ from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.model import Document, Model
+from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.xmi.emf.files import SUFFIX, ZIP_ENTRY, FileText, not_writable, write_text
+from amalthea_uros.xmi.emf.files import SUFFIX, ZIP_ENTRY, not_writable, write_text
 from amalthea_uros.xmi.emf.versions import migrated_name
 from amalthea_uros.xmi.emf.writer import document_text, usable_source
 
@@ -84,12 +85,12 @@ def _save(saved: Iterable[tuple[Document, Path, bool]], compress: bool | None = 
 def _file_text(document: Document, canonical: bool, compress: bool | None) -> FileText:
     source = document.source
     text = document_text(document, canonical)
-    zip_entry = source.zip_entry if source else None
+    zip_entry = source.file.zip_entry if source else None
     if compress is not None:
         zip_entry = (zip_entry or ZIP_ENTRY) if compress else None
     # The canonical header declares UTF-8.
     is_kept = not canonical and source is not None and usable_source(document) is source
-    return FileText(text, source.encoding if source and is_kept else "utf-8", zip_entry)
+    return FileText(text, source.file.encoding if source and is_kept else "utf-8", zip_entry)
 
 
 def _require_version(model: Model, version: str) -> None:

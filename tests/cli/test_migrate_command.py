@@ -186,4 +186,4 @@ def test_models_of_different_versions_are_compared(tmp_path):
 def test_every_version_is_read_and_written(version, tmp_path):
     path = model(tmp_path / "a.amxmi", version)
     assert run(path, "-o", tmp_path / "b.amxmi").exit_code in (0, 1)
-    assert version_of((tmp_path / "b.amxmi").read_text()) == "3.3.0"
+    assert version_of((tmp_path / "b.amxmi").read_bytes()) == "3.3.0"

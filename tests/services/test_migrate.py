@@ -46,7 +46,7 @@ def write(path: Path, version: str, *content: str) -> Path:
 def versions(folder: Path) -> dict[str, str]:
     """The versions of all files below a folder."""
     return {
-        path.relative_to(folder).as_posix(): version_of(path.read_text())
+        path.relative_to(folder).as_posix(): version_of(path.read_bytes())
         for path in sorted(folder.rglob("*"))
         if path.is_file()
     }
@@ -139,7 +139,7 @@ class TestWhereResultsGo:
         assert (tmp_path / "a-3.3.0.amxmi").read_text() == "mine"
         assert migrate_files(path, target=path).findings[0].message == "the file exists already"
         assert migrate_files(path, force=True).is_complete
-        assert version_of((tmp_path / "a-3.3.0.amxmi").read_text()) == "3.3.0"
+        assert version_of((tmp_path / "a-3.3.0.amxmi").read_bytes()) == "3.3.0"
 
     def test_two_files_do_not_become_one(self, tmp_path):
         one, other = write(tmp_path / "x" / "a.amxmi", "0.9.8"), write(tmp_path / "y" / "a.amxmi", "0.9.8")
@@ -342,7 +342,7 @@ class TestVersions:
     def test_any_newer_one(self, version, tmp_path):
         path = write(tmp_path / "a.amxmi", "ITEA 1.1.0", '<swModel><labels name="a b"/></swModel>')
         migrate_files(path, version, tmp_path / "b.amxmi")
-        assert version_of((tmp_path / "b.amxmi").read_text()) == version
+        assert version_of((tmp_path / "b.amxmi").read_bytes()) == version
         model = amuros.load(tmp_path / "b.amxmi")
         assert model[am.Label, "a b"]
 
@@ -462,7 +462,7 @@ class TestLibrary:
         with pytest.raises(ValueError, match="no typed classes"):
             _ = result.model
         result.save(tmp_path / "b.amxmi")
-        assert version_of((tmp_path / "b.amxmi").read_text()) == "0.9.3"
+        assert version_of((tmp_path / "b.amxmi").read_bytes()) == "0.9.3"
 
     def test_several_models(self, tmp_path):
         for name in "ab":

@@ -9,9 +9,9 @@ from pathlib import Path
 from amalthea_uros._internal import files
 from amalthea_uros._internal.files import FileError, FileFlaw
 from amalthea_uros._internal.limits import ADVICE, MODEL_ELEMENTS, MODEL_SIZE
-from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError, WriteError
+from amalthea_uros.metamodel.source import FileText
 
 #: What the suffixes of model files begin with: in ITEA versions, sub-models have suffixes such as `.amxmi-sw`.
 SUFFIX = ".amxmi"
@@ -21,27 +21,9 @@ _SUFFIXES = re.compile(r"\.amxmi(?:-[a-z]+)?")
 #: Name that EMF gives to the only entry of a zipped resource.
 ZIP_ENTRY = "ResourceContents"
 
+_SHORTEST_ELEMENT = len("<a/>")
+
 _DECLARED = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
-
-
-@dataclass(frozen=True, slots=True)
-class FileText:
-    """The characters of a file and how they were stored.
-
-    Attributes
-    ----------
-    stored : its bytes, if these are the text in UTF-8
-    """
-
-    text: str
-    encoding: str = "utf-8"
-    zip_entry: str | None = None
-    stored: bytes | None = None
-
-    @property
-    def utf8(self) -> bytes:
-        """The text in UTF-8. To encode it takes long and, since Python keeps the result, as much memory as the text."""
-        return self.text.encode() if self.stored is None else self.stored
 
 
 def is_model_name(path: Path) -> bool:
@@ -122,22 +104,26 @@ def _read_text(path: Path, max_size: int) -> FileText:
         entry, data = unpacked(path, data, max_size)
     encoding = files.marked_encoding(data) or _declared_encoding(data)
     try:
-        text = files.decode(data, encoding)
+        text = data if encoding == "utf-8" and data.isascii() else files.decode(data, encoding)
     except (UnicodeError, LookupError) as error:
         advice = "AMALTHEA models are XML files in UTF-8, plain or zipped."
         reason = f"not XML: the content is not valid {encoding} text ({error})"
         raise FileError(path, reason, advice, FileFlaw.ENCODING) from None
-    if not text or text.isspace():
+    content = FileText(data if encoding == "utf-8" else text, encoding, entry)
+    utf8 = content.utf8
+    if not utf8 or utf8.isspace():
         raise FileError(path, "the file is empty", "Check that it was written completely.")
-    _check_elements(path, text, MODEL_ELEMENTS * max(MODEL_SIZE, max_size) // MODEL_SIZE)
-    return FileText(text, encoding, entry, data if encoding == "utf-8" else None)
+    _check_elements(path, utf8, MODEL_ELEMENTS * max(MODEL_SIZE, max_size) // MODEL_SIZE)
+    return content
 
 
-def _check_elements(path: Path, text: str, limit: int) -> None:
+def _check_elements(path: Path, utf8: bytes, limit: int) -> None:
     """Refuse a model with too many elements before any object is made: a hundred kilobytes of ZIP may hold ten million."""
-    # Comments count too, since they are kept. The end tags are counted only if that may make a difference, because it takes long.
-    tags = text.count("<")
-    if tags > limit and tags - text.count("</") > limit:
+    # Comments count too, since they are kept. Tags are counted only if that may make a difference, because it takes long.
+    if len(utf8) < limit * _SHORTEST_ELEMENT:
+        return
+    tags = utf8.count(b"<")
+    if tags > limit and tags - utf8.count(b"</") > limit:
         raise FileError(path, f"the file has more than {limit:,} elements", ADVICE, FileFlaw.SIZE)
 
 

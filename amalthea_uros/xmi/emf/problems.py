@@ -9,7 +9,7 @@ from xml.parsers import expat
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
-from amalthea_uros.metamodel.source import SourceText
+from amalthea_uros.metamodel.source import FileText, SourceText
 
 
 class CollectedFinding:
@@ -67,53 +67,55 @@ def location(path: Path, source: SourceText, byte_offset: int, attribute: str = 
 MAX_DEPTH = 200
 
 
-def refusal(path: Path, text: str, offset: int, rule: str, message: str, help_text: str = "") -> ReadError:
+def refusal(path: Path, file: FileText, offset: int, rule: str, message: str, help_text: str = "") -> ReadError:
     """The exception for a problem at an offset (in bytes of UTF-8) of a file that cannot be read because of it."""
-    return ReadError([Finding(rule, Severity.ERROR, message, location(path, SourceText(text), offset), help_text)])
+    return ReadError([Finding(rule, Severity.ERROR, message, location(path, SourceText(file), offset), help_text)])
 
 
-def has_doctype(path: Path, text: str, offset: int) -> ReadError:
+def has_doctype(path: Path, file: FileText, offset: int) -> ReadError:
     """The refusal of a document type declaration."""
     message = "the file has a document type declaration (DTD)"
-    return refusal(path, text, offset, "XMI003", message, "Remove it; it is refused because it may define entities.")
+    return refusal(path, file, offset, "XMI003", message, "Remove it; it is refused because it may define entities.")
 
 
-def too_deep(path: Path, text: str, offset: int) -> ReadError:
+def too_deep(path: Path, file: FileText, offset: int) -> ReadError:
     """The refusal of elements that are nested too deep."""
     message = f"the elements are nested more than {MAX_DEPTH} levels deep"
     help_text = "Check how the file was generated; no real model is nested that deep."
-    return refusal(path, text, offset, "XMI004", message, help_text)
+    return refusal(path, file, offset, "XMI004", message, help_text)
 
 
-def malformed(path: Path, text: str, error: expat.ExpatError, offset: int, open_element: tuple[str, int] | None) -> ReadError:
+def malformed(
+    path: Path, file: FileText, error: expat.ExpatError, offset: int, open_element: tuple[str, int] | None
+) -> ReadError:
     """The refusal of text that is not well-formed.
 
     Parameters
     ----------
     open_element : what is not closed and the offset of its start tag, None if everything is
     """
-    if not text.lstrip().startswith("<"):
-        return refusal(path, text, 0, "XMI002", "not XML", "AMALTHEA models are XML files in UTF-8, plain or zipped.")
+    if not file.text.lstrip().startswith("<"):
+        return refusal(path, file, 0, "XMI002", "not XML", "AMALTHEA models are XML files in UTF-8, plain or zipped.")
     reason = expat.errors.messages[error.code]
     if open_element and reason == expat.errors.XML_ERROR_NO_ELEMENTS:
         name, start = open_element
-        line = text.encode().count(b"\n", 0, start) + 1
+        line = file.utf8.count(b"\n", 0, start) + 1
         reason = f"unexpected end of file, the {name} on line {line} is not closed"
-    return refusal(path, text, offset, "XMI002", f"not well-formed XML: {reason}")
+    return refusal(path, file, offset, "XMI002", f"not well-formed XML: {reason}")
 
 
-def lacks_namespace(text: str) -> bool:
+def lacks_namespace(utf8: bytes) -> bool:
     """Whether a text uses `xsi:type` without a declaration of the prefix; most texts need not be parsed to know it."""
-    if "xsi:type" not in text or "xmlns:xsi" in text:
+    if b"xsi:type" not in utf8 or b"xmlns:xsi" in utf8:
         return False
     try:
-        expat.ParserCreate(namespace_separator=" ").Parse(text, True)
+        expat.ParserCreate("utf-8", " ").Parse(utf8, True)
     except expat.ExpatError as error:
         return expat.ErrorString(error.code) == expat.errors.XML_ERROR_UNBOUND_PREFIX
     return False  # only in a value or a comment
 
 
-def undeclared_prefix(path: Path, text: str, offset: int, prefix: str, namespace: str) -> ReadError:
+def undeclared_prefix(path: Path, file: FileText, offset: int, prefix: str, namespace: str) -> ReadError:
     """The refusal of a prefix without declaration."""
     message = f"not well-formed XML: undeclared namespace prefix {prefix!r}"
-    return refusal(path, text, offset, "XMI002", message, f'Add xmlns:{prefix}="{namespace}" to the root element.')
+    return refusal(path, file, offset, "XMI002", message, f'Add xmlns:{prefix}="{namespace}" to the root element.')

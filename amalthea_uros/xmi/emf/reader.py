@@ -19,10 +19,9 @@ from amalthea_uros.metamodel.classes import Amalthea
 from amalthea_uros.metamodel.containment import ContainmentList
 from amalthea_uros.metamodel.element import Element, extras_of, set_container
 from amalthea_uros.metamodel.model import Document
-from amalthea_uros.metamodel.source import Prefixes, SourceText
+from amalthea_uros.metamodel.source import FileText, Prefixes, SourceText
 from amalthea_uros.xmi.emf import problems
 from amalthea_uros.xmi.emf.escape import WHITE_SPACE, escape_text
-from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import connect, disconnect
 from amalthea_uros.xmi.emf.header import XSI_NAMESPACE, ModelHeader, NotAModel, read_header
 from amalthea_uros.xmi.emf.plan import TYPE_PREFIX, ClassPlan, FeaturePlan, plans
@@ -146,10 +145,9 @@ class _ModelReader:
 
     def read(self) -> ReadResult:
         parser = self.parser
-        text = self.content.text
         connect(
             parser,
-            text,
+            self.encoded,
             start=self.start_root,
             end=self.end_part,
             characters=self.characters,
@@ -170,10 +168,7 @@ class _ModelReader:
         assert header is not None
         document = Document(root, header.version, self.path)
         prefixes = Prefixes(header.xmi_id, header.xsi_type, header.type_prefix)
-        content = self.content
-        document.source = source = SourceText(
-            content.text, header.version, content.encoding, content.zip_entry, prefixes, self.elements, self.starts, self.ends
-        )
+        document.source = source = SourceText(self.content, header.version, prefixes, self.elements, self.starts, self.ends)
         document.prolog, document.epilog = self.prolog, self.epilog
         document.namespaces = header.namespaces
         findings = [collected.finding(self.path, source) for collected in self.collector]
@@ -193,8 +188,8 @@ class _ModelReader:
         if isinstance(header, NotAModel):
             raise self.refuse(*header)
         self.header = header
-        if problems.lacks_namespace(self.content.text):
-            raise problems.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
+        if problems.lacks_namespace(self.encoded):
+            raise problems.undeclared_prefix(self.path, self.content, self.offset, "xsi", XSI_NAMESPACE)
         if header.version_note:
             added = "Additions of that version are preserved when the file is saved, but ignored otherwise."
             self.report("XMI007", Severity.WARNING, header.version_note, added)
@@ -447,15 +442,15 @@ class _ModelReader:
         self.collector.add(CollectedFinding(rule, severity, message, help_text, self.offset, attribute))
 
     def refuse(self, rule: str, message: str, help_text: str) -> ReadError:
-        return problems.refusal(self.path, self.content.text, self.offset, rule, message, help_text)
+        return problems.refusal(self.path, self.content, self.offset, rule, message, help_text)
 
     def refuse_doctype(self, *_declaration: Any) -> None:
-        raise problems.has_doctype(self.path, self.content.text, self.offset)
+        raise problems.has_doctype(self.path, self.content, self.offset)
 
     def too_deep(self) -> ReadError:
-        return problems.too_deep(self.path, self.content.text, self.offset)
+        return problems.too_deep(self.path, self.content, self.offset)
 
     def malformed(self, error: expat.ExpatError) -> ReadError:
         held = next(((frame[0], frame[3]) for frame in reversed(self.stack) if frame[0] is not None), None)
         open_element = (type(held[0]).__name__, self.starts[held[1]]) if held else None
-        return problems.malformed(self.path, self.content.text, error, self.parser.ErrorByteIndex, open_element)
+        return problems.malformed(self.path, self.content, error, self.parser.ErrorByteIndex, open_element)

@@ -165,7 +165,7 @@ class _Resolver:
                 assert path
                 offset = source.byte_starts[source.index[holder]]
                 message = f"the file has more than {MODEL_REFERENCES:,} references in lists"
-                raise refusal(path, source.text, offset, "XMI004", message, ADVICE)
+                raise refusal(path, source.file, offset, "XMI004", message, ADVICE)
         return texts
 
     def find(self, use: Use, text: str) -> Element:

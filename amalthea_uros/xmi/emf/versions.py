@@ -66,13 +66,13 @@ def migrated_name(name: str, target: str) -> str:
     return name + ".amxmi" if is_sub_model and position(target) >= position("ITEA 1.3.0") else name
 
 
-#: Characters that are parsed first in search of the root.
+#: Bytes that are parsed first in search of the root.
 _PIECE = 10_000
 
 
-def version_of(text: str) -> str:
+def version_of(utf8: bytes) -> str:
     """The AMALTHEA version that a file declares, "" if its root is not that of a model, or if it cannot be read."""
-    parser = expat.ParserCreate()
+    parser = expat.ParserCreate("utf-8")
     #: The version of the root element; "" at a document type declaration, which is refused elsewhere.
     found: list[str] = []
 
@@ -87,10 +87,10 @@ def version_of(text: str) -> str:
         # The root is mostly near the start, but comments in front of it may have any length. Pieces double, because expat begins again
         # with a token that is not complete.
         end = 0
-        while end < len(text) and not found:
+        while end < len(utf8) and not found:
             start, end = end, 2 * end or _PIECE
             # At the end it parses what it has put off, as newer ones do with incomplete tokens.
-            parser.Parse(text[start:end], end >= len(text))
+            parser.Parse(utf8[start:end], end >= len(utf8))
     except expat.ExpatError:
         pass
     return found[0] if found else ""

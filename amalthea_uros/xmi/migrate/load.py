@@ -13,8 +13,8 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Model
+from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.metamodel.versions import spelled
-from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.reader import ReadResult, read
 from amalthea_uros.xmi.emf.references import resolve
 from amalthea_uros.xmi.emf.versions import VERSIONS, is_known, is_older, position

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from amalthea_uros._internal.files import is_directory, is_file, is_stream, not_writable, resolved
 from amalthea_uros._internal.paths import StrPath
-from amalthea_uros._internal.records import dataclass, field, replace
+from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import WriteError
-from amalthea_uros.xmi.emf.files import SUFFIX, ZIP_ENTRY, FileText, write_texts
+from amalthea_uros.metamodel.source import FileText
+from amalthea_uros.xmi.emf.files import SUFFIX, ZIP_ENTRY, write_texts
 from amalthea_uros.xmi.emf.files import not_writable as write_error
 from amalthea_uros.xmi.emf.versions import migrated_name
 from amalthea_uros.xmi.migrate.load import MigratedSet
@@ -120,7 +121,7 @@ class Destination:
                 continue
             self._claim(target, tree.path)
             if self.compress is not None:
-                text = replace(text, zip_entry=(text.zip_entry or ZIP_ENTRY) if self.compress else None)
+                text = FileText(text.text, text.encoding, (text.zip_entry or ZIP_ENTRY) if self.compress else None)
             contents[target] = text
             if self.in_place and target != tree.path:
                 removed.append(tree.path)

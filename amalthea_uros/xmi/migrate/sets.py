@@ -15,7 +15,8 @@ from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError, WriteError
 from amalthea_uros.metamodel.model import Model
 from amalthea_uros.metamodel.naming import TYPE_MARK
-from amalthea_uros.xmi.emf.files import SUFFIX, FileText, is_model_name, not_readable, read_text
+from amalthea_uros.metamodel.source import FileText
+from amalthea_uros.xmi.emf.files import SUFFIX, is_model_name, not_readable, read_text
 from amalthea_uros.xmi.emf.versions import version_of
 from amalthea_uros.xmi.emf.writer import document_text
 from amalthea_uros.xmi.migrate.load import MigratedSet, migrate_set, refusals
@@ -56,7 +57,7 @@ class InputFile:
     @classmethod
     def of(cls, path: Path, scope: Path | None, content: FileText, target: str) -> InputFile:
         """A file whose content is known already."""
-        version = version_of(content.text)
+        version = version_of(content.utf8)
         findings = tuple(refusals(path, content, version, target))
         return cls(path, scope, None if findings else content, version, findings)
 
@@ -101,7 +102,7 @@ def set_of_model(model: Model, target: str) -> tuple[InputFile, ...]:
     inputs = []
     for number, document in enumerate(model.documents):
         path = document.path or Path(f"model{number or ''}{SUFFIX}")
-        zip_entry = document.source.zip_entry if document.source else None
+        zip_entry = document.source.file.zip_entry if document.source else None
         inputs.append(InputFile.of(path, None, FileText(document_text(document), zip_entry=zip_entry), target))
     return tuple(inputs)
 

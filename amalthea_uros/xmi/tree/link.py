@@ -16,7 +16,8 @@ from amalthea_uros._internal.files import is_file, resolved
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.naming import NO_NAME, TYPE_MARK
-from amalthea_uros.xmi.emf.files import SUFFIX, FileText, read_text
+from amalthea_uros.metamodel.source import FileText
+from amalthea_uros.xmi.emf.files import SUFFIX, read_text
 from amalthea_uros.xmi.tree.classes import is_of, local_name, may_be
 from amalthea_uros.xmi.tree.model_set import ModelSet, Origins
 from amalthea_uros.xmi.tree.node import Node, proxy

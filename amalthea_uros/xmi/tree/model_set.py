@@ -8,8 +8,7 @@ from pathlib import Path
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.diagnostics import Location
-from amalthea_uros.metamodel.source import SourceText
-from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.metamodel.source import FileText, SourceText
 from amalthea_uros.xmi.emf.problems import location
 from amalthea_uros.xmi.tree.node import Node, NodeIndex, all_below
 from amalthea_uros.xmi.tree.notes import Postponed, StepNotes
@@ -55,9 +54,9 @@ class Origins:
         self.labels: list[tuple[str, str]] = []
         self._files: list[tuple[int, Path, SourceText]] = []
 
-    def begin_file(self, path: Path, text: str) -> None:
+    def begin_file(self, path: Path, file: FileText) -> None:
         """All elements from now on are in that file."""
-        self._files.append((len(self.starts), path, SourceText(text)))
+        self._files.append((len(self.starts), path, SourceText(file)))
 
     def add(self, start: int, parent: int, tag: str, name: str) -> int:
         """An element more; what it has as origin."""

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 from xml.parsers import expat
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.xmi.emf import problems
-from amalthea_uros.xmi.emf.files import FileText
 from amalthea_uros.xmi.emf.handlers import connect, disconnect
 from amalthea_uros.xmi.emf.header import XMI_NAMESPACE, XSI_NAMESPACE
 from amalthea_uros.xmi.emf.versions import itea_package, namespace_version
@@ -71,7 +71,7 @@ def parse(path: Path, content: FileText, origins: Origins, notes: StepNotes) -> 
 class _NodeParser:
     def __init__(self, path: Path, content: FileText, origins: Origins, notes: StepNotes) -> None:
         self.path, self.content, self.origins, self.notes = path, content, origins, notes
-        self.expat = expat.ParserCreate()
+        self.expat = expat.ParserCreate("utf-8")
         self.root: Node | None = None
         self.version = ""
         self.nodes: list[Node] = []
@@ -86,10 +86,10 @@ class _NodeParser:
         self.prolog: list[str] = []
 
     def parse(self) -> ParsedFile:
-        parser = self.expat
+        parser, utf8 = self.expat, self.content.utf8
         connect(
             parser,
-            self.content.text,
+            utf8,
             start=self.start_root,
             end=self.end,
             characters=self.characters,
@@ -97,14 +97,14 @@ class _NodeParser:
             processing_instruction=lambda target, data: self.comments.append(f"<?{target} {data}?>"),
             doctype=self.refuse_doctype,
         )
-        self.origins.begin_file(self.path, self.content.text)
+        self.origins.begin_file(self.path, self.content)
         try:
-            # As str: then offsets count UTF-8 bytes, whatever the encoding of the file.
-            parser.Parse(self.content.text, True)
+            # In UTF-8, whatever the encoding of the file and its declaration: so the offsets count.
+            parser.Parse(utf8, True)
         except expat.ExpatError as error:
             held = next((node for node in reversed(self.stack) if node is not None), None)
             place = (held.type or held.tag, self.origins.starts[held.origin]) if held else None
-            raise problems.malformed(self.path, self.content.text, error, parser.ErrorByteIndex, place) from None
+            raise problems.malformed(self.path, self.content, error, parser.ErrorByteIndex, place) from None
         assert self.root is not None
         names = {node.tag for node in self.nodes} | {node.type for node in self.nodes}
         tree = Tree(self.path, self.content, self.version, self.root, self.prolog, self.comments, frozenset(names))
@@ -113,8 +113,8 @@ class _NodeParser:
     def start_root(self, name: str, attributes: dict[str, str]) -> None:
         prefixes = {key.partition(":")[2]: uri for key, uri in attributes.items() if key.startswith("xmlns")}
         by_namespace = {uri: prefix for prefix, uri in prefixes.items()}
-        if problems.lacks_namespace(self.content.text):
-            raise problems.undeclared_prefix(self.path, self.content.text, self.offset, "xsi", XSI_NAMESPACE)
+        if problems.lacks_namespace(self.content.utf8):
+            raise problems.undeclared_prefix(self.path, self.content, self.offset, "xsi", XSI_NAMESPACE)
         self.xsi_type = f"{by_namespace.get(XSI_NAMESPACE, 'xsi')}:type"
         xmi = by_namespace.get(XMI_NAMESPACE, "xmi")
         self.xmi_id = f"{xmi}:id"
@@ -166,7 +166,7 @@ class _NodeParser:
                 node.comments, self.comments = self.comments, []
             stack.append(node)
             if len(stack) > max_depth:
-                raise problems.too_deep(self.path, self.content.text, self.offset)
+                raise problems.too_deep(self.path, self.content, self.offset)
 
         return start
 
@@ -227,7 +227,7 @@ class _NodeParser:
             self.notes.lost(holder, "text between the elements", repr(data.strip()[:30]))
 
     def refuse_doctype(self, *_declaration: Any) -> None:
-        raise problems.has_doctype(self.path, self.content.text, self.offset)
+        raise problems.has_doctype(self.path, self.content, self.offset)
 
     @property
     def offset(self) -> int:

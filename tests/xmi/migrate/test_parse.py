@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from migration import model
 
-from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.xmi.tree.model_set import Origins
 from amalthea_uros.xmi.tree.notes import StepNotes
 from amalthea_uros.xmi.tree.parse import parse

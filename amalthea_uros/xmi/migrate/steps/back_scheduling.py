@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypeAlias
 
-from amalthea_uros.xmi.emf.files import FileText
+from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.xmi.migrate.steps.kept import (
     DEFINITION,
     DEFINITIONS,
