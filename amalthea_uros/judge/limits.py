@@ -57,7 +57,40 @@ JOB_METRICS = {
 }
 #: Differences, which can be negative.
 _SIGNED = (TimeMetric.LATENESS, TimeMetric.END_TO_START)
-DEADLINE, PERIOD = "response time, deadline", "response time, period"
+
+
+def _deadline_quantity(is_implicit: bool) -> str:
+    return f"response time, {'period' if is_implicit else 'deadline'}"
+
+
+class JudgedDeadline:
+    """The deadline of a process as a limit that was judged.
+
+    Attributes
+    ----------
+    name : of the process
+    is_implicit : whether the deadline is the period
+    """
+
+    __slots__ = ()
+
+    name: str
+    is_implicit: bool
+
+    @property
+    def object(self) -> str:
+        """The process itself."""
+        return self.name
+
+    @property
+    def quantity(self) -> str:
+        """The response time, and what limits it."""
+        return _deadline_quantity(self.is_implicit)
+
+    @property
+    def is_upper(self) -> bool:
+        """A deadline limits the maximum."""
+        return True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,7 +155,7 @@ def deadline_limit(process: Process, deadline: Time, is_implicit: bool = False) 
     return SystemLimit(
         name=process.name,
         object=process.name,
-        quantity=PERIOD if is_implicit else DEADLINE,
+        quantity=_deadline_quantity(is_implicit),
         limit=deadline,
         item=process,
         metric=JobMetric.RESPONSE_TIME,

@@ -12,7 +12,7 @@ from fractions import Fraction
 from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
-from amalthea_uros.judge.limits import DEADLINE, PERIOD
+from amalthea_uros.judge.limits import JudgedDeadline
 from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.verdict import ObservedLimit, ObservedVerdict
 from amalthea_uros.perf.executors import HandleKind
@@ -130,7 +130,7 @@ class CoreObservation(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessObservation(Shown):
+class ProcessObservation(JudgedDeadline, Shown):
     """A task or interrupt service routine.
 
     Attributes
@@ -177,21 +177,6 @@ class ProcessObservation(Shown):
         return True
 
     # As a limit that was judged.
-
-    @property
-    def object(self) -> str:
-        """The process itself."""
-        return self.name
-
-    @property
-    def quantity(self) -> str:
-        """The response time, and what limits it."""
-        return PERIOD if self.is_implicit else DEADLINE
-
-    @property
-    def is_upper(self) -> bool:
-        """A deadline limits the maximum."""
-        return True
 
     @property
     def limit(self) -> Fraction | None:

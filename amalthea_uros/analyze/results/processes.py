@@ -9,7 +9,7 @@ from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.needs import ExecutionOnCores
 from amalthea_uros.judge.evidence import Ends
-from amalthea_uros.judge.limits import DEADLINE, PERIOD, SystemLimit
+from amalthea_uros.judge.limits import JudgedDeadline, SystemLimit
 from amalthea_uros.judge.margins import margin_of
 from amalthea_uros.judge.verdict import Failure, Judgement, Verdict
 from amalthea_uros.timing.basics.quantities import JobMetric
@@ -69,7 +69,7 @@ class ProcessorResult(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessResult(Shown):
+class ProcessResult(JudgedDeadline, Shown):
     """A task or interrupt service routine.
 
     Attributes
@@ -135,21 +135,6 @@ class ProcessResult(Shown):
         return Ends(max(response.best, self.least_wcet or 0), response.worst)
 
     # As a limit that was judged.
-
-    @property
-    def object(self) -> str:
-        """The process itself."""
-        return self.name
-
-    @property
-    def quantity(self) -> str:
-        """The response time, and what limits it."""
-        return PERIOD if self.is_implicit else DEADLINE
-
-    @property
-    def is_upper(self) -> bool:
-        """A deadline limits the maximum."""
-        return True
 
     @property
     def limit(self) -> Time | None:
