@@ -1,5 +1,6 @@
 """Every object and attribute knows its line and column."""
 
+from migration import model
 from support import DATA
 
 import amalthea_uros as amuros
@@ -44,3 +45,18 @@ def test_the_text_of_a_line_is_kept_once(tmp_path):
     document = model.documents[0]
     lines = [document.location_of(element).text for element in (model[Runnable, "Act"], model[Runnable, "Act"])]
     assert lines[0] is lines[1]
+
+
+def test_a_finding_about_several_references_is_at_the_first_of_the_file(tmp_path):
+    path = tmp_path / "model.amxmi"
+    there, missing = ("S?type=PeriodicStimulus", "X?type=PeriodicStimulus")
+    lines = [
+        f'<tasks name="T1" stimuli="{there}"/>',
+        f'<isrs name="I" stimuli="{missing}"/>',
+        f'<tasks name="T2" stimuli="{missing}"/>',
+    ]
+    stimulus = '<stimuliModel><stimuli xsi:type="am:PeriodicStimulus" name="S"/></stimuliModel>'
+    path.write_text(model("3.3.0", "<swModel>\n" + "\n".join(lines) + f"\n</swModel>{stimulus}"))
+    (finding,) = amuros.load(path).findings
+    assert "2 references, this is the first" in finding.message
+    assert finding.location.text == lines[1]
