@@ -36,7 +36,7 @@ LINES = {
     "inchron_bridge": 3349,
     "judge": 609,
     "measure": 1124,
-    "metamodel": 3314,
+    "metamodel": 3322,
     "names": 17,
     "perf": 1838,
     "platforms": 0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import StrEnum
+from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from amalthea_uros.metamodel.containment import ContainmentList, ReferenceList
@@ -106,9 +107,14 @@ def features_of(cls: type[Element]) -> dict[str, ElementFeature]:
     if found is None:
         found = {}
         for base in reversed(cls.__mro__):
-            found.update((name, value) for name, value in vars(base).items() if isinstance(value, ElementFeature))
+            found.update(_own_features(base))
         _FEATURES[cls] = found
     return found
+
+
+@cache
+def _own_features(cls: type) -> dict[str, ElementFeature]:
+    return {name: value for name, value in vars(cls).items() if isinstance(value, ElementFeature)}
 
 
 def containments_of(cls: type[Element]) -> tuple[ElementFeature, ...]:

@@ -115,12 +115,17 @@ class VersionFacts:
             return None
         return next((f for f in self.features(class_name) if f.name == feature_name), None)
 
+    @cached_property
+    def _supertypes(self) -> dict[str, frozenset[str]]:
+        return {}
+
     def supertypes(self, class_name: str) -> frozenset[str]:
         """The class itself and everything it inherits from."""
-        found = {class_name}
-        for supertype in self.classes[class_name].supertypes:
-            found |= self.supertypes(supertype)
-        return frozenset(found)
+        known = self._supertypes.get(class_name)
+        if known is None:
+            inherited = map(self.supertypes, self.classes[class_name].supertypes)
+            known = self._supertypes[class_name] = frozenset({class_name}.union(*inherited))
+        return known
 
     def concrete_subtypes(self, class_name: str) -> tuple[str, ...]:
         """Every class whose objects are allowed where `class_name` is declared."""
