@@ -43,7 +43,7 @@ LINES = {
     "report": 8642,
     "services": 2687,
     "simulate": 8622,
-    "source": 3713,
+    "source": 3719,
     "spec": 3023,
     "timing": 5792,
     "trace": 4784,

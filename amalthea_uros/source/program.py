@@ -99,6 +99,31 @@ class CodeFunction:
         return returns[0].named_children[0]
 
 
+@dataclass(eq=False)
+class FunctionMacro:
+    """A macro with parameters."""
+
+    name: str
+    file: SourceFile
+    node: Node
+
+    @cached_property
+    def function(self) -> CodeFunction | None:
+        """It as if it were a function; None if its text is no statement."""
+        value, parameters = self.node.child_by_field_name("value"), self.node.child_by_field_name("parameters")
+        text = text_of(value) if value is not None else ""
+        if value is None or parameters is None or "##" in text:
+            return None
+        # Its code has the rows that it has in the file.
+        code = f"{chr(10) * value.start_point.row}void f{text_of(parameters)} {{ {text.replace(chr(92), chr(32))}; }}"
+        root = parse(SourceFile(self.file.path, code.encode()))
+        body = next((each for each in descendants(root) if each.type == "compound_statement"), None)
+        if body is None or body.has_error:
+            return None
+        names = tuple(text_of(each) for each in parameters.named_children)
+        return CodeFunction(self.name, self.file, body, parameters=names, locals=frozenset(names), is_macro=True)
+
+
 @dataclass(slots=True, eq=False)
 class CodeProgram:
     """Everything that sources define.
@@ -106,7 +131,7 @@ class CodeProgram:
     Attributes
     ----------
     macros : texts of macros without parameters, and of enumerators without a value; with several ones the value is unknown
-    function_macros : those with parameters, with the texts
+    function_macros : those with parameters
     functions : by name; several of one name in different files or classes
     members : of classes, in their order
     objects : of each class, the places where one of it comes into being, and the class whose member it is, "" for none; an array
@@ -125,7 +150,7 @@ class CodeProgram:
 
     files: list[tuple[SourceFile, Node]] = field(default_factory=list)
     macros: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    function_macros: dict[str, tuple[SourceFile, Node]] = field(default_factory=dict)
+    function_macros: dict[str, FunctionMacro] = field(default_factory=dict)
     functions: dict[str, list[CodeFunction]] = field(default_factory=lambda: defaultdict(list))
     members: dict[str, dict[str, None]] = field(default_factory=lambda: defaultdict(dict))
     objects: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
@@ -194,8 +219,8 @@ def read_program(files: tuple[SourceFile, ...]) -> CodeProgram:
         program.files.append((file, root))
         for node in descendants(root):
             _note(program, file, node)
-    for name, (file, node) in program.function_macros.items():
-        function = function_of_macro(name, file, node) if "rclc_" in text_of(node) else None
+    for name, macro in program.function_macros.items():
+        function = macro.function if "rclc_" in text_of(macro.node) else None
         if function is not None:
             program.functions[name].append(function)
     return program
@@ -226,22 +251,6 @@ def _too_deep(file: SourceFile) -> Finding:
     return Finding("IMP002", Severity.ERROR, "the code is nested too deeply; the file is not read", Location(file.path), advice)
 
 
-def function_of_macro(name: str, file: SourceFile, node: Node) -> CodeFunction | None:
-    """A macro as if it were a function; None if its text is no statement."""
-    value, parameters = node.child_by_field_name("value"), node.child_by_field_name("parameters")
-    text = text_of(value) if value is not None else ""
-    if value is None or parameters is None or "##" in text:
-        return None
-    # Its code has the rows that it has in the file.
-    code = f"{chr(10) * value.start_point.row}void f{text_of(parameters)} {{ {text.replace(chr(92), chr(32))}; }}"
-    root = parse(SourceFile(file.path, code.encode()))
-    body = next((each for each in descendants(root) if each.type == "compound_statement"), None)
-    if body is None or body.has_error:
-        return None
-    names = tuple(text_of(each) for each in parameters.named_children)
-    return CodeFunction(name, file, body, parameters=names, locals=frozenset(names), is_macro=True)
-
-
 def _is_static(name: str, statement: str) -> bool:
     """Whether a statement seems to declare a variable that stays."""
     static = _STATIC.search(statement)
@@ -265,7 +274,7 @@ def _note(program: CodeProgram, file: SourceFile, node: Node) -> None:
                 program.macros[text_of(name)].add(text_of(value).strip() if value is not None else "")
         case "preproc_function_def":
             if (name := node.child_by_field_name("name")) is not None:
-                program.function_macros[text_of(name)] = file, node
+                program.function_macros[text_of(name)] = FunctionMacro(text_of(name), file, node)
         case "function_definition":
             _note_function(program, file, node)
         case "declaration":

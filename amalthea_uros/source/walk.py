@@ -12,7 +12,7 @@ from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.source.callees import Callees
 from amalthea_uros.source.files import SourceFile
 from amalthea_uros.source.intervals import interval_of, interval_of_macro
-from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of, function_of_macro
+from amalthea_uros.source.program import CodeFunction, CodeProgram, declared, function_of
 from amalthea_uros.source.scope import SITE, THIS, Binding, Expression, call_site
 from amalthea_uros.source.spans import TextSpans
 from amalthea_uros.source.syntax import branches, called, descendants, is_conditional, location_of, parse_expression, text_of
@@ -342,8 +342,8 @@ class CodeWalk:
 
     def _interval_of_argument(self, name: str, arguments: Sequence[Node], argument: Node, context: _WalkPosition) -> Time:
         """The least time between two executions of an argument of a macro that executes it every so often."""
-        text = self.program.function_macros.get(name)
-        macro = None if text is None else function_of_macro(name, *text)
+        named = self.program.function_macros.get(name)
+        macro = None if named is None else named.function
         if macro is None or len(macro.parameters) != len(arguments):
             return 0
         given = dict(zip(macro.parameters, arguments, strict=True))

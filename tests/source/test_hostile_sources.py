@@ -8,8 +8,9 @@ from importing import imported
 
 from amalthea_uros.errors import ReadError
 from amalthea_uros.services.import_code import import_code
-from amalthea_uros.source import loops
+from amalthea_uros.source import loops, program
 from amalthea_uros.source.files import SourceFile
+from amalthea_uros.source.syntax import parse
 
 PROGRAM = 'void microros_entry(void * p) {\n  rclc_node_init_default(&node, "a", "", &support);\n%s\n}\n'
 
@@ -83,12 +84,12 @@ REPEATED = {
 def test_the_effort_for_repeated_lines_is_linear(name, tmp_path):
     before, inside, loop = REPEATED[name]
 
-    def program(count):
+    def code(count):
         every = f"{INIT}{repeated(inside, count)}\nfor (;;) {{ {SPIN} {repeated(loop, count)} }}"
         value = f"int value() {{ {repeated('a = @;', count)} return 1; }}"
         return f"{repeated(before, count)}\n{value}\n{PROGRAM % every}"
 
-    programs = [program(count) for count in (20, 40, 80)]
+    programs = [code(count) for count in (20, 40, 80)]
     assert growth(lambda text: imported(tmp_path, text, name="main.cpp"), programs) < 2.4
 
 
@@ -101,13 +102,13 @@ def test_the_effort_for_repeated_lines_is_linear(name, tmp_path):
     ],
 )
 def test_the_effort_for_long_lists_is_linear(lists, use, tmp_path):
-    def program(count):
+    def code(count):
         parts = {"int": ",".join(count * "1"), "enum": ",".join(f"E{number}" for number in range(count))}
         members = repeated("int a@;", count), parts["int"]
         filled = lists % (members if lists.startswith("struct") else parts[lists.split()[0]])
         return f"{filled}\n{PROGRAM % (repeated(use, count) + SPINNING)}"
 
-    programs = [program(count) for count in (20, 40, 80)]
+    programs = [code(count) for count in (20, 40, 80)]
     assert growth(lambda text: imported(tmp_path, text, name="main.cpp"), programs) < 2.4
 
 
@@ -122,6 +123,15 @@ def test_lines_are_counted_once():
     file = SourceFile(Path("main.c"), Text(b"a\nbc\r\n"))
     assert [(each.line, each.column, each.text) for each in (file.location(1, 1), file.location_at(3))] == 2 * [(2, 2, "bc")]
     assert Text.splits == 1
+
+
+def test_a_macro_is_parsed_once_however_often_it_is_used(tmp_path, monkeypatch):
+    parsed = []
+    monkeypatch.setattr(program, "parse", lambda file: parsed.append(file) or parse(file))
+    imported(
+        tmp_path, "#define CHECK(fn) if ((fn) != 0) { stop(); }\n" + PROGRAM % repeated("CHECK(rcl_publish(&p@, &m, 0));", 20)
+    )
+    assert len(parsed) == 2
 
 
 def test_spins_under_many_conditions_are_refused(tmp_path, monkeypatch):
