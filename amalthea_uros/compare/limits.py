@@ -17,6 +17,7 @@ from amalthea_uros.compare.results import MeasuredLimit
 from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import (
+    NO_LIMIT,
     Stated,
     SystemLimit,
     deadline_limit,
@@ -102,7 +103,7 @@ def _not_measured(limit: SystemLimit) -> str:
         is_measurable = isinstance(metric, TimeMetric) and metric is not TimeMetric.CORE_EXECUTION_TIME
         return "" if is_measurable else f"the {metric} is not measured in traces"
     if limit.metric is not None:
-        return ""
+        return NO_LIMIT if limit.limit is None else ""
     return f"what {limit.name!r} limits is not a quantity of one process, runnable or chain, so that it was not measured"
 
 
