@@ -26,6 +26,7 @@ from amalthea_uros.report.basics.document import (
 )
 from amalthea_uros.report.documents.changes import impact_section
 from amalthea_uros.report.wording.cells import (
+    at_most,
     badge,
     by_core_and_priority,
     deadline_text,
@@ -48,7 +49,7 @@ from amalthea_uros.simulate.observations import (
 from amalthea_uros.simulate.results import IDLE, Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
-from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, rounded_time_text, time_text
+from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
 _MINUTE = 60 * SECOND
 REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
@@ -111,12 +112,13 @@ def _failure(item: Judged) -> str:
         if item.value is None or item.limit is None:
             return f"{what}: {item.reason}"
         reason = f" ({item.reason})" if item.reason else ""
-        return f"{what} is {value_text(item, item.value)}{reason}, limit {limit_text(item)}"
+        return f"{what} is {_observed_text(item)}{reason}, limit {limit_text(item)}"
     is_late = item.response_time is not None and item.deadline is not None and item.response_time.max > item.deadline
     if item.response_time is None or (item.reason and not is_late):
         return f"{item.name}: {item.reason}"
     kind = "period" if item.is_implicit else "deadline"
-    late = f"{item.name} responds after {time_text(round(item.response_time.max))}, {kind} {time_text(item.deadline or 0)}"
+    after = at_most(item.response_time.max, item.deadline)
+    late = f"{item.name} responds after {after}, {kind} {time_text(item.deadline or 0)}"
     return f"{late}; {item.reason}" if item.reason else late
 
 
@@ -286,23 +288,28 @@ def _requirements(simulation: Simulation) -> Table:
 
 
 def _requirement(requirement: RequirementObservation) -> tuple[Cell, ...]:
-    rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
     return (
         requirement.name,
         limited_text(requirement.quantity, requirement.object),
         limit_text(requirement),
-        _rounded(requirement, requirement.value, rounding, requirement.limit),
+        _observed_text(requirement),
         badge(requirement.verdict),
         "" if requirement.margin is None else _rounded(requirement, requirement.margin, Rounding.DOWN),
         _remark(requirement),
     )
 
 
+def _observed_text(requirement: RequirementObservation) -> str:
+    """What was observed of the limited quantity, on its side of the limit."""
+    rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
+    return _rounded(requirement, requirement.value, rounding, requirement.limit)
+
+
 def _rounded(
     requirement: RequirementObservation, value: Fraction | None, rounding: Rounding, limit: Fraction | None = None
 ) -> str:
     if value is None or not requirement.is_time:
-        return value_text(requirement, value)
+        return value_text(requirement, None if value is None else rounded(value, rounding, limit))
     return rounded_time_text(value, rounding, limit)
 
 
