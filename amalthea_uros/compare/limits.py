@@ -18,7 +18,6 @@ from amalthea_uros.judge.causes import quantity_of
 from amalthea_uros.judge.evidence import ObservedValues
 from amalthea_uros.judge.limits import (
     NO_LIMIT,
-    Stated,
     SystemLimit,
     deadline_limit,
     deadline_of,
@@ -83,9 +82,7 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     series = measured.get((limit.object, limit.metric or ""))
     missing = _not_measured(limit)
     if missing or series is None:
-        what = f"the {limit.quantity} of {limit.object!r}" if isinstance(limit.item, Stated) else "its response time"
-        reason = missing or f"{what} was not measured"
-        return MeasuredLimit.of(limit, not_observed(reason), samples=0)
+        return MeasuredLimit.of(limit, not_observed(missing or "it was not measured"), samples=0)
     assert series.statistics is not None
     values, samples = _values(series), series.statistics.count
     if not limit.is_jitter:
@@ -104,7 +101,7 @@ def _not_measured(limit: SystemLimit) -> str:
         return "" if is_measurable else f"the {metric} is not measured in traces"
     if limit.metric is not None:
         return NO_LIMIT if limit.limit is None else ""
-    return f"what {limit.name!r} limits is not a quantity of one process, runnable or chain, so that it was not measured"
+    return "it is not a quantity of one process, runnable or chain, so it was not measured"
 
 
 def _values(series: Series) -> ObservedValues:

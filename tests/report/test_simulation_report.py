@@ -235,7 +235,8 @@ def test_if_nothing_was_observed_nothing_is_praised():
 
 
 @pytest.mark.parametrize(
-    ("duration", "expected"), [(60 * SECOND, "1 min"), (90 * SECOND, "90 s"), (1500 * MS, "1.5 s"), (20 * US, "20 us")]
+    ("duration", "expected"),
+    [(60 * SECOND, "1 min"), (90 * SECOND, "90 s"), (1500 * MS, "1.5 s"), (20 * US, "20 us"), (199_849_841_391, "199.8 ms")],
 )
 def test_durations(duration, expected):
     assert duration_text(duration) == expected

@@ -26,6 +26,7 @@ from amalthea_uros.report.basics.document import (
 )
 from amalthea_uros.report.documents.changes import impact_section
 from amalthea_uros.report.wording.cells import (
+    about,
     at_most,
     badge,
     by_core_and_priority,
@@ -46,7 +47,7 @@ from amalthea_uros.simulate.observations import (
     ProcessObservation,
     RequirementObservation,
 )
-from amalthea_uros.simulate.results import IDLE, Judged, Simulation
+from amalthea_uros.simulate.results import Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
 from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, rounded, rounded_time_text, time_text
@@ -56,14 +57,14 @@ REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
 
 
 def duration_text(duration: Time) -> str:
-    """A duration, in minutes if it is a number of them: "5 min", "1.5 s"."""
-    return f"{duration // _MINUTE} min" if duration % _MINUTE == 0 else time_text(duration)
+    """A duration, in minutes if it is a number of them: "5 min", "1.5 s"; one that was measured has four digits."""
+    return f"{duration // _MINUTE} min" if duration % _MINUTE == 0 else about(duration)
 
 
 def closing_line(simulation: Simulation) -> str:
     """What was missed, or what came closest to its limit; and that this is no bound."""
     run = f"Observed over {duration_text(simulation.duration)} (seed {simulation.seed})"
-    parts = filter(None, (_incomplete(simulation), _missed(simulation), _not_observed(simulation)))
+    parts = filter(None, (simulation.incomplete, _missed(simulation), _not_observed(simulation)))
     return f"{run}: {'; '.join(parts)}. {REMINDER}"
 
 
@@ -79,13 +80,6 @@ def value_text(requirement: RequirementObservation, value: Fraction | None) -> s
     if value is None:
         return "-"
     return time_text(round(value)) if requirement.is_time else number_text(value)
-
-
-def _incomplete(simulation: Simulation) -> str:
-    """The first thing that was not simulated, and the number of the others; whether nothing at all was."""
-    idle, errors = [each for each in simulation.errors if each == IDLE], [each for each in simulation.errors if each != IDLE]
-    others = [counted(len(errors) - 1, "other error")] if errors[1:] else []
-    return "; ".join([": ".join([*idle, *errors[:1]]), *others])
 
 
 def _missed(simulation: Simulation) -> str:
