@@ -15,7 +15,7 @@ from amalthea_uros.compare.agreement import LEAST, Rule
 from amalthea_uros.compare.naming import Target
 from amalthea_uros.compare.results import MeasuredLimit
 from amalthea_uros.judge.causes import quantity_of
-from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.evidence import ObservedProcess, ObservedValues
 from amalthea_uros.judge.limits import (
     NO_LIMIT,
     SystemLimit,
@@ -26,7 +26,7 @@ from amalthea_uros.judge.limits import (
     stated_limits,
     without_number,
 )
-from amalthea_uros.judge.verdict import ObservedVerdict, not_observed, observe
+from amalthea_uros.judge.verdict import ObservedVerdict, not_observed, observe, observe_process
 from amalthea_uros.measure.baselines import with_baseline
 from amalthea_uros.measure.series import Series
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
@@ -54,8 +54,11 @@ def _judged_limits(system: System, settings: Settings, targets: Iterable[Target]
         (quantity_of(limit), limit.limit) for item, limits in stated if isinstance(item, Requirement) for limit in limits
     }
     for limit in _deadlines(TimingContext.of_scheduling(system, settings)):
+        series = measured.get((limit.object, limit.metric or ""))
+        if series is not None and series.counts.lost_activations:
+            yield _with_lost_activations(limit, series)
         # A deadline that is also stated as a requirement is judged once.
-        if (quantity_of(limit), limit.limit) not in of_requirements:
+        elif (quantity_of(limit), limit.limit) not in of_requirements:
             yield _judged(limit, measured, system)
     for item, limits in stated:
         for limit in limits or [without_number(item)]:
@@ -91,6 +94,15 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     if is_from_period(limit) and period is None:
         return MeasuredLimit.of(limit, not_observed(f"{limit.object!r} has no nominal period"), samples=samples)
     return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples=samples)
+
+
+def _with_lost_activations(deadline: SystemLimit, series: Series) -> MeasuredLimit:
+    """The verdict on a process of which activations were lost, whatever its jobs responded after."""
+    assert series.statistics is not None
+    seen = ObservedProcess(response=_values(series), lost_activations=series.counts.lost_activations)
+    judgement = observe_process(deadline, seen)
+    assert judgement is not None
+    return MeasuredLimit.of(deadline, judgement, samples=series.statistics.count)
 
 
 def _not_measured(limit: SystemLimit) -> str:

@@ -33,7 +33,11 @@ _IMPORTANT = (
     ChainQuantity.REDUCED_DATA_AGE,
 )
 #: How the statistics that are shown are rounded: minimum and maximum outwards, as wherever they are shown.
-_ROUNDINGS: dict[Statistic | None, Rounding] = {Statistic.MIN: Rounding.DOWN, Statistic.MEAN: Rounding.NEAREST, Statistic.MAX: Rounding.UP}
+_ROUNDINGS: dict[Statistic | None, Rounding] = {
+    Statistic.MIN: Rounding.DOWN,
+    Statistic.MEAN: Rounding.NEAREST,
+    Statistic.MAX: Rounding.UP,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,6 +273,8 @@ def _missed(limits: Sequence[MeasuredLimit]) -> str:
         return ""
     first = limits[0]
     others = f", and {counted(len(limits) - 1, 'other limit')}" if limits[1:] else ""
+    if first.value is None and first.reason:
+        return f"limit missed: {first.object}: {first.reason}{others}"
     value = f" is {_value_text(first)}," if first.value is not None and first.is_time else ""
     return f"limit missed: {first.quantity} of {first.object}{value} {_limit_text(first)}{others}"
 
