@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from amalthea_uros.design.proposals import DesignProposal, LimitRow
     from amalthea_uros.services.optimize import Optimization
 
-#: More values of a choice are only counted, and further drawbacks.
+_NOTHING = "nothing: allow more with --vary or --offer"
+#: More values of a choice are only counted, and further drawbacks and violations.
 _MOST_OPTIONS, _MOST_CHOICES, _MOST_DRAWBACKS, _MOST_VIOLATIONS = 6, 12, 6, 3
 #: Larger numbers have an exponent.
 _LONG = 10**15
@@ -56,9 +57,7 @@ def optimization_document(result: Optimization) -> ResultDocument:
 
 
 def _question(result: Optimization) -> Sentences:
-    rows = [("may change", line) for line in _space_lines(result.space)] or [
-        ("may change", "nothing: allow more with --vary or --offer")
-    ]
+    rows = [("may change", line) for line in list(_space_lines(result.space)) or [_NOTHING]]
     rows.append(("must hold", "all deadlines, requirements and constraints of the model"))
     rows += [("", _limit_text(limit)) for limit in result.limits]
     rows += [("then" if number else "minimised", _GOALS.get(goal.name, goal.name)) for number, goal in enumerate(result.goals)]
