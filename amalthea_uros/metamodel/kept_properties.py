@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def prefix(version: str) -> str:
-    """What the keys of all properties start with that keep content of that version."""
+    """The start of the keys of all properties that keep content of that version."""
     return f"AMALTHEA {version}: "
 
 

@@ -238,8 +238,8 @@ def extract_parameters(
     others: list[Parameter] = []
     stated = list(_stated(element, context))
     names = {name for name, _ in stated}
-    found = _kept(element.custom_properties, SCHEDULING_PARAMETER) if kept is None else _kept(kept, PARENT_PARAMETER)
-    stated += [parameter for parameter in found if parameter[0] not in names]
+    besides = _kept(element.custom_properties, SCHEDULING_PARAMETER) if kept is None else _kept(kept, PARENT_PARAMETER)
+    stated += [parameter for parameter in besides if parameter[0] not in names]
     names |= {name for name, _ in stated}
     for name, values in (*(default for default in _defaults(defaults) if default[0] not in names), *stated):
         value = values[0]

@@ -309,7 +309,7 @@ def _limit_text(limit: MeasuredLimit) -> str:
 
 
 def _value_text(limit: MeasuredLimit) -> str:
-    """What was measured of the limited quantity, on its side of the limit."""
+    """The measured value of the limited quantity, on its side of the limit."""
     return _time(limit.value if limit.is_time else None, Rounding.UP if limit.is_upper else Rounding.DOWN, limit.limit)
 
 

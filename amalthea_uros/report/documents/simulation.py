@@ -294,7 +294,7 @@ def _requirement(requirement: RequirementObservation) -> tuple[Cell, ...]:
 
 
 def _observed_text(requirement: RequirementObservation) -> str:
-    """What was observed of the limited quantity, on its side of the limit."""
+    """The observed value of the limited quantity, on its side of the limit."""
     rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
     return _rounded(requirement, requirement.value, rounding, requirement.limit)
 
