@@ -39,7 +39,11 @@ def last_line(*arguments):
     ("model", "found", "code"),
     [
         # Nothing is executed; nothing was missed, but neither was anything kept.
-        ("no-priority", "not everything was simulated in 2: nothing was executed; 'A' is not simulated: it has no priority", 1),
+        (
+            "no-priority",
+            "not everything was simulated in 2: nothing was executed: 'A' is not simulated: it has no priority; 1 other error",
+            1,
+        ),
         ("zero-with-unit", "no deadline, requirement or constraint to judge", 0),
         ("order-across-tasks", "nothing missed", 0),
         ("trigger-before-end", "limits missed or activations lost in 2 (reaction.reaction)", 1),

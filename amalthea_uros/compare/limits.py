@@ -15,9 +15,9 @@ from amalthea_uros.compare.agreement import LEAST, Rule
 from amalthea_uros.compare.naming import Target
 from amalthea_uros.compare.results import MeasuredLimit
 from amalthea_uros.judge.causes import quantity_of
-from amalthea_uros.judge.evidence import ObservedValues
+from amalthea_uros.judge.evidence import ObservedProcess, ObservedValues
 from amalthea_uros.judge.limits import (
-    Stated,
+    NO_LIMIT,
     SystemLimit,
     deadline_limit,
     deadline_of,
@@ -26,7 +26,7 @@ from amalthea_uros.judge.limits import (
     stated_limits,
     without_number,
 )
-from amalthea_uros.judge.verdict import ObservedVerdict, not_observed, observe
+from amalthea_uros.judge.verdict import ObservedVerdict, not_observed, observe, observe_process
 from amalthea_uros.measure.baselines import with_baseline
 from amalthea_uros.measure.series import Series
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
@@ -54,8 +54,11 @@ def _judged_limits(system: System, settings: Settings, targets: Iterable[Target]
         (quantity_of(limit), limit.limit) for item, limits in stated if isinstance(item, Requirement) for limit in limits
     }
     for limit in _deadlines(TimingContext.of_scheduling(system, settings)):
+        series = measured.get((limit.object, limit.metric or ""))
+        if series is not None and series.counts.lost_activations:
+            yield _with_lost_activations(limit, series)
         # A deadline that is also stated as a requirement is judged once.
-        if (quantity_of(limit), limit.limit) not in of_requirements:
+        elif (quantity_of(limit), limit.limit) not in of_requirements:
             yield _judged(limit, measured, system)
     for item, limits in stated:
         for limit in limits or [without_number(item)]:
@@ -82,9 +85,7 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     series = measured.get((limit.object, limit.metric or ""))
     missing = _not_measured(limit)
     if missing or series is None:
-        what = f"the {limit.quantity} of {limit.object!r}" if isinstance(limit.item, Stated) else "its response time"
-        reason = missing or f"{what} was not measured"
-        return MeasuredLimit.of(limit, not_observed(reason), samples=0)
+        return MeasuredLimit.of(limit, not_observed(missing or "it was not measured"), samples=0)
     assert series.statistics is not None
     values, samples = _values(series), series.statistics.count
     if not limit.is_jitter:
@@ -95,6 +96,15 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples=samples)
 
 
+def _with_lost_activations(deadline: SystemLimit, series: Series) -> MeasuredLimit:
+    """The verdict on a process of which activations were lost, whatever its jobs responded after."""
+    assert series.statistics is not None
+    seen = ObservedProcess(response=_values(series), lost_activations=series.counts.lost_activations)
+    judgement = observe_process(deadline, seen)
+    assert judgement is not None
+    return MeasuredLimit.of(deadline, judgement, samples=series.statistics.count)
+
+
 def _not_measured(limit: SystemLimit) -> str:
     """Why a limit is about nothing that traces show; how often jobs migrate is not measured, so the time on one core is not known."""
     if isinstance(limit.item, Requirement):
@@ -102,8 +112,8 @@ def _not_measured(limit: SystemLimit) -> str:
         is_measurable = isinstance(metric, TimeMetric) and metric is not TimeMetric.CORE_EXECUTION_TIME
         return "" if is_measurable else f"the {metric} is not measured in traces"
     if limit.metric is not None:
-        return ""
-    return f"what {limit.name!r} limits is not a quantity of one process, runnable or chain, so that it was not measured"
+        return NO_LIMIT if limit.limit is None else ""
+    return "it is not a quantity of one process, runnable or chain, so it was not measured"
 
 
 def _values(series: Series) -> ObservedValues:

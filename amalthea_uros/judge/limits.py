@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import TypeAlias
 
-from amalthea_uros._internal.records import dataclass
+from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros.perf.constraints import (
     Bound,
     ChainSynchronization,
@@ -57,6 +57,8 @@ JOB_METRICS = {
 }
 #: Differences, which can be negative.
 _SIGNED = (TimeMetric.LATENESS, TimeMetric.END_TO_START)
+#: Why a constraint is about nothing.
+NO_LIMIT = "it states no limit"
 
 
 def _deadline_quantity(is_implicit: bool) -> str:
@@ -183,9 +185,16 @@ def limits_of(item: Stated) -> tuple[SystemLimit, ...]:
     return tuple(limit for limit in _of_constraint(item) if limit.limit is not None)
 
 
-def without_number(item: Stated, what: str = "", quantity: str = "") -> SystemLimit:
-    """The limit of a constraint that is kept or not, or of which no limit is known."""
-    return SystemLimit(name=item.name, object=what, quantity=quantity or type(item).__name__, limit=None, item=item)
+def without_number(item: Stated, what: str = "") -> SystemLimit:
+    """The limit of a constraint that is kept or not, or of one that states none.
+
+    Parameters
+    ----------
+    what : what is limited; default: what the constraint names
+    """
+    assert not isinstance(item, Requirement)
+    unlimited = next(_of_constraint(item))
+    return replace(unlimited, object=what) if what else unlimited
 
 
 def nominal_period(limit: SystemLimit, system: System) -> Time | None:
@@ -250,6 +259,8 @@ def _of_constraint(constraint: EventConstraint) -> Iterator[SystemLimit]:
             yield from _between(constraint, label, "data age", constraint.earliest, constraint.latest)
             name, least, most = "data age in cycles", constraint.earliest_cycle, constraint.latest_cycle
             yield from _between(constraint, label, name, least, most, is_time=False)
+        case OrderConstraint():
+            yield SystemLimit(name=constraint.name, object="", quantity="order of runnables", limit=None, item=constraint)
 
 
 def _between(

@@ -6,6 +6,7 @@ do not. The times follow from when a job was activated, started and ended, and h
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
@@ -75,6 +76,7 @@ class _EndedJobs:
     Attributes
     ----------
     rows : start, end, activation, times in states, whether nothing is missing between it and the one before
+    lost_activations : the numbers of activations that became no job, in their order
     """
 
     rows: list[tuple[int, ...]] = field(default_factory=list)
@@ -82,14 +84,16 @@ class _EndedJobs:
     last: int | None = None
     incomplete: int = 0
     lost: int = 0
+    lost_activations: list[int] = field(default_factory=list)
 
     def add(
         self, job: int, segment: int, activation: int, start: int, end: int, times: dict[str, int], is_numbered: bool
     ) -> None:
         """Add one that has ended."""
-        is_next = segment == self.segment and (not is_numbered or self.last is None or job == self.last + 1)
+        number = job - bisect_left(self.lost_activations, job)
+        is_next = segment == self.segment and (not is_numbered or self.last is None or number == self.last + 1)
         self.rows.append((job, activation, start, end, *times.values(), is_next))
-        self.segment, self.last = segment, job
+        self.segment, self.last = segment, number
 
 
 @dataclass(slots=True)
@@ -141,6 +145,8 @@ class JobFollower:
     def _change(self, time: int, kind: int, process: int, instance: int) -> None:
         key, (before, after) = (process, instance), _STATES[kind]
         if kind == EventKind.ACTIVATION_LOST:
+            self._number(key)
+            self._of(process).lost_activations.append(instance)
             return
         job = self._open.get(key)
         if job is None or not job.is_process:
@@ -275,7 +281,7 @@ class JobFollower:
 
 
 def _series(kind: MeasuredKind, name: str, ended: _EndedJobs, begin: str) -> Iterator[Series]:
-    counts = Counts(incomplete=ended.incomplete, lost=ended.lost)
+    counts = Counts(incomplete=ended.incomplete, lost=ended.lost, lost_activations=len(ended.lost_activations))
     if not ended.rows:
         yield Series(kind=kind, name=name, quantity=JobMetric.GROSS_EXECUTION_TIME, statistics=None, counts=counts)
         return

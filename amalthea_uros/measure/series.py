@@ -159,12 +159,14 @@ class Counts:
     lost : values that gaps in the log, or in numbers that count up, prove to be missing
     duplicated : events that are there more than once
     reordered : events that stand before an earlier one
+    lost_activations : activations that became no job, because too many jobs were pending
     """
 
     incomplete: int = 0
     lost: int = 0
     duplicated: int = 0
     reordered: int = 0
+    lost_activations: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

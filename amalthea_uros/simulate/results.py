@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from amalthea_uros._internal.by_name import Results
+from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros._internal.shown import Record, Shown
 from amalthea_uros.diagnostics import Finding, Severity
@@ -112,6 +113,13 @@ class Simulation(Shown):
         return (IDLE, *found) if is_idle else found
 
     @property
+    def incomplete(self) -> str:
+        """The first of the errors, and the number of the others; whether nothing at all was executed."""
+        idle, errors = [each for each in self.errors if each == IDLE], [each for each in self.errors if each != IDLE]
+        others = [counted(len(errors) - 1, "other error")] if errors[1:] else []
+        return "; ".join([": ".join([*idle, *errors[:1]]), *others])
+
+    @property
     def judged(self) -> tuple[Judged, ...]:
         """The processes, requirements and constraints with a verdict."""
         processes = (each for each in (*self.processes, *self.left_out) if each.verdict is not None)
@@ -174,7 +182,7 @@ class Simulation(Shown):
             yield f"{requirement.name}.{requirement.quantity.replace(' ', '_')}.verdict", requirement.verdict
         yield "lost_activations", self.lost_activations
         if self.errors:
-            yield "errors", "; ".join(self.errors)
+            yield "errors", self.incomplete
 
 
 _COLUMNS = ("min_ps", "avg_ps", "max_ps", "std_ps")

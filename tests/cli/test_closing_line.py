@@ -40,6 +40,11 @@ def closing(tmp_path, text, *options):
         # 80 % of 25 ms are used, and 3 % of 1 ms.
         (ADVANCED, "Schedulable: yes; tightest: factor-to-output_reaction, 4.971 ms of 25 ms left", 0),
         (LATE, "Schedulable: no: U responds after 27 ms, period 25 ms", 1),
+        (
+            LATE.replace("15 ms", "15.123456 ms"),
+            "Schedulable: no: U responds after 27.13 ms, period 25 ms",
+            1,
+        ),
         (LOST, "Schedulable: no: U responds after 27 ms, period 25 ms, and loses activations", 1),
         (
             LOST.replace("priority: 1", "priority: 1, deadline: 40 ms"),

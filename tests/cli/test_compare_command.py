@@ -45,6 +45,23 @@ def test_a_bound_that_is_refuted_is_an_error(watch):
     assert amuros("compare", SIMPLE, watch(16, 16.5), "--by", "analysis", "--uncertainty", "1us").returncode == 0
 
 
+def test_extremes_are_rounded_outwards_everywhere(watch):
+    """One measured value is one number in all tables and in the closing line."""
+    run = amuros("compare", SIMPLE, watch(15.99991, 16.00001), "--by", "both", "--phase", "Message_Factor=0ms")
+    predicted, bounds, _ = (line for line in run.stdout.splitlines() if line.startswith("  Control_Function  "))
+    (limit,) = (line for line in run.stdout.splitlines() if line.startswith("  Control_Function_response_time  "))
+    assert "15.99 us / 16 us / 16.01 us" in predicted
+    assert all("16.01 us" in row for row in (bounds, limit))
+    assert "min response time of Control_Function is 15.99 us, 90 ps below" in run.stdout.splitlines()[-1]
+
+
+def test_limits_that_were_not_measured_have_one_cause(watch):
+    """So that long tables say it once, in one footnote."""
+    run = amuros("compare", SIMPLE, watch(16, name="Executor_Task"), *ONE, "--output", "json")
+    causes = {limit["reason"] for limit in json.loads(run.stdout)["requirements"] if limit["verdict"] == "not_observed"}
+    assert causes == {"it was not measured"}
+
+
 def test_a_limit_that_is_missed(watch):
     run = amuros("compare", SIMPLE, watch(1100), *ONE, "--tolerance", "99%")
     assert run.returncode == 1

@@ -38,6 +38,21 @@ def test_nothing_needs_to_change():
     assert "Nothing needs to change" in run.stdout.splitlines()[-1]
 
 
+def test_what_is_unknown_now_is_shown_with_its_cause_and_not_at_full_length(tmp_path):
+    path = tmp_path / "app.amxmi"
+    tasks = "".join(f"  - {{name: T{number}, period: 1 ms, execution_time: 1 us}}\n" for number in range(9))
+    path.with_suffix(".yaml").write_text(f"amuros: 1\nname: one\nhardware: single-core\ntasks:\n{tasks}")
+    amuros("build", path.with_suffix(".yaml"), "-o", path)
+    path.write_text(re.sub("<taskAllocation .*?</taskAllocation>", "", path.read_text(), flags=re.DOTALL))
+    question = amuros("optimize", path).stdout.partition("\n\n")[0]
+    assert "may change  nothing: allow more with --vary or --offer\n" in question
+    assert (
+        "now         unknown: T0.response time, period; T1.response time, period; T2.response time, period and 6 more\n"
+        in question
+    )
+    assert question.endswith("Not proved schedulable: 9 of 9 are unknown, because of 'T0': it is not allocated to a scheduler")
+
+
 def test_where_nothing_but_deadlines_is_demanded_the_option_for_more_is_named(tmp_path):
     path = tmp_path / "app.yaml"
     path.write_text("amuros: 1\nname: one\nhardware: single-core\ntasks:\n  - {name: A, period: 1 ms, execution_time: 1 us}\n")

@@ -9,7 +9,7 @@ from support import ROOT
 from amalthea_uros import build_model, save
 from amalthea_uros.perf.system import System
 
-LINE = "To get numbers, state"
+LINE = "To get numbers"
 EXECUTOR = ROOT / "samples" / "executor.amxmi"
 
 
@@ -45,4 +45,4 @@ def test_what_is_complete_has_no_such_lines():
 def test_a_model_without_tasks_asks_for_the_file_that_has_them(tmp_path):
     model = tmp_path / "hardware.amxmi"
     save(build_model(System()), model)
-    assert "which tasks there are: the model has none" in amuros("analyze", model).stdout
+    assert "The model has no tasks and no interrupts: add them, or give all files" in amuros("analyze", model).stdout

@@ -12,8 +12,11 @@ from support import ROOT
 import amalthea_uros as amuros
 from amalthea_uros import InvalidArgumentError, Meaning, Names, compare, perf, simulate
 from amalthea_uros.compare.naming import parse_meaning
+from amalthea_uros.compare.results import Agreement
 from amalthea_uros.compare.shares import parse_tolerance
+from amalthea_uros.judge.verdict import ObservedVerdict
 from amalthea_uros.measure.series import MeasuredKind, Series, statistics_of
+from amalthea_uros.report.documents.comparison import closing_line
 from amalthea_uros.services.subject import open_system
 from amalthea_uros.units import MICROSECOND, MILLISECOND
 
@@ -35,6 +38,17 @@ application:
         - {name: Control_Function, period: 1 ms, execution_time: 4 us}
 requirements:
   - {process: Control_Function, response_time: 80 us}
+"""
+
+
+#: U is late in some of its jobs, so that the next activation is lost.
+LOSING = """
+amuros: 1
+name: losing
+hardware: {platform: single-core, frequency: 100 MHz}
+tasks:
+  - {name: H, period: 20 ms, execution_time: 6 ms, priority: 2}
+  - {name: U, period: 25 ms, execution_time: 15 ms, deadline: 100 ms, priority: 1}
 """
 
 
@@ -122,6 +136,20 @@ def test_a_model_agrees_with_its_own_simulation(sample, tmp_path):
     assert found.distributions
     assert all(row.distance.value < Fraction(1, 100) for row in found.distributions)
     assert not found.missed
+
+
+def test_lost_activations_are_missed_as_in_the_simulation_that_lost_them(tmp_path):
+    model, trace = tmp_path / "app.yaml", tmp_path / "run.btf"
+    model.write_text(LOSING)
+    observed = simulate(model, "1 s", trace_paths=[trace])
+    found = compare(model, trace)
+    lost = next(process for process in observed.processes if process.name == "U")
+    assert lost.verdict is ObservedVerdict.MISSED
+    limit = next(each for each in found.limits if each.object == "U")
+    assert (limit.verdict, limit.reason) == (lost.verdict, lost.reason)
+    assert not [row for row in found.compared if row.verdict is not Agreement.WITHIN]
+    assert not found.losses
+    assert closing_line(found).endswith("; limit missed: U: 10 activations lost")
 
 
 def test_another_phase_of_a_message_does_not_refute_the_model(tmp_path):

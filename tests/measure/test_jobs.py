@@ -91,6 +91,19 @@ def test_a_missing_number_is_a_lost_job():
     assert found["Task", JobMetric.START_TO_START].counts == Counts(lost=2)
 
 
+def test_an_activation_that_the_system_lost_is_no_job_of_which_times_are_missing():
+    """Its number is that of no job: the next job follows the last one, as a simulation that loses activations observes it."""
+    rows = [(time + 100 * job, kind, job) for job in (0, 1, 4, 5) for time, kind, _ in PREEMPTED]
+    rows = [*rows[:10], (200, E.ACTIVATION_LOST, 2), (300, E.ACTIVATION_LOST, 3), *rows[10:]]
+    found = measured(task_events(*rows))
+    assert values(found, JobMetric.ACTIVATE_TO_ACTIVATE) == [100, 300, 100]
+    assert found["Task", JobMetric.START_TO_START].counts == Counts(lost_activations=2)
+    # Of a job whose number is missing besides, nothing is known.
+    found = measured(task_events(*rows[:10], *rows[11:]))
+    assert values(found, JobMetric.ACTIVATE_TO_ACTIVATE) == [100, 100]
+    assert found["Task", JobMetric.START_TO_START].counts == Counts(lost=1, lost_activations=1)
+
+
 def test_a_runnable_does_not_execute_while_its_process_is_preempted():
     process = task_events(*PREEMPTED)
     runnable = [(11, E.RUNNABLE_START, TASK, 0, RUNNABLE, 0), (22, E.RUNNABLE_TERMINATE, TASK, 0, RUNNABLE, 0)]

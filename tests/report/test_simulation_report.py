@@ -172,6 +172,21 @@ def test_what_there_is_and_what_is_left_out():
             replace(SIMULATION, processes=Results([replace(CONTROL, deadline=20 * US, verdict=ObservedVerdict.MISSED)])),
             "Control responds after 29 us, deadline 20 us",
         ),
+        # Four digits, rounded away from the limit.
+        (
+            with_requirements(limit(value=Fraction(2_433_707_081, 1000) * US, limit=Fraction(US))),
+            "response time of Control is 2.434 s, limit at most 1 us",
+        ),
+        (
+            with_requirements(limit(value=Fraction(28_000_001, 10**6) * US)),
+            "response time of Control is 28.01 us, limit at most 28 us",
+        ),
+        (
+            with_requirements(
+                limit(quantity="normalized response time", value=Fraction(4, 3), limit=Fraction(1), is_time=False)
+            ),
+            "normalized response time of Control is 1.334, limit at most 1",
+        ),
         (
             replace(
                 SIMULATION, processes=Results([replace(CONTROL, verdict=ObservedVerdict.MISSED, reason="2 activations lost")])
@@ -220,7 +235,8 @@ def test_if_nothing_was_observed_nothing_is_praised():
 
 
 @pytest.mark.parametrize(
-    ("duration", "expected"), [(60 * SECOND, "1 min"), (90 * SECOND, "90 s"), (1500 * MS, "1.5 s"), (20 * US, "20 us")]
+    ("duration", "expected"),
+    [(60 * SECOND, "1 min"), (90 * SECOND, "90 s"), (1500 * MS, "1.5 s"), (20 * US, "20 us"), (199_849_841_391, "199.8 ms")],
 )
 def test_durations(duration, expected):
     assert duration_text(duration) == expected

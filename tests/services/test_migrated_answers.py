@@ -8,7 +8,7 @@ from effort import every
 from migration import model
 from support import SHARED
 
-from amalthea_uros import analyze_files
+from amalthea_uros import analyze_files, build, save
 from amalthea_uros.report.writers.json import content
 from amalthea_uros.services.format import format_files
 from amalthea_uros.services.migrate import migrate_files
@@ -57,6 +57,47 @@ def published():
 def test_a_published_model_says_the_same_after_its_migration(file, tmp_path):
     before, after = answer([CORPUS / file]), answer(migrated(CORPUS / file, tmp_path / "migrated"))
     assert after == before
+
+
+#: Deadlines of tasks, for which there is no feature in 1.2.0; and of the association of a scheduler with its parent.
+DEADLINES = """
+amuros: 1
+name: deadlines
+hardware: {platform: single-core, frequency: 1 MHz}
+tasks:
+  - {name: A, period: 1 ms, execution_time: 300 us, priority: 2}
+  - {name: B, period: 10 ms, execution_time: 1 ms, priority: 1, deadline: 2 ms}
+"""
+
+
+@pytest.mark.parametrize("policy", ["FixedPriorityPreemptive", "EarliestDeadlineFirst"])
+def test_a_model_says_the_same_in_an_older_version(policy, tmp_path):
+    """The deadlines of its tasks are features in 2.0.0 and later, and kept in custom properties before."""
+    description, newest = tmp_path / "app.yaml", tmp_path / "newest.amxmi"
+    description.write_text(DEADLINES)
+    save(build(description).model, newest)
+    newest.write_text(newest.read_text().replace("FixedPriorityPreemptive", policy))
+    older = tmp_path / "older.amxmi"
+    migrate_files([newest], to="1.2.0", target=older)
+    _, expected, _ = answer([newest])
+    assert [each["deadline_ps"] for each in expected["processes"]] == [1_000_000_000, 2_000_000_000]
+    assert answer([older])[1] == expected
+
+
+def test_the_deadline_of_a_scheduler_below_another_is_kept_in_an_older_version(tmp_path):
+    parameter = """<schedulingParameters key="deadline?type=SchedulingParameterDefinition">
+      <value t="Time" value="7" unit="ms"/></schedulingParameters>"""
+    content = f"""<osModel><operatingSystems name="OS"><taskSchedulers name="P" definition="E?type=SchedulerDefinition"/>
+      <taskSchedulers name="T" definition="E?type=SchedulerDefinition">
+        <parentAssociation parent="P?type=TaskScheduler">{parameter}</parentAssociation></taskSchedulers></operatingSystems>
+      <schedulerDefinitions name="E" processParameters="deadline?type=SchedulingParameterDefinition"/>
+      <schedulingParameterDefinitions name="deadline" type="Time"/></osModel>"""
+    newest = tmp_path / "newest.amxmi"
+    newest.write_text(model("3.3.0", content))
+    older = tmp_path / "older.amxmi"
+    migrate_files([newest], to="1.2.0", target=older)
+    deadlines = [answer([path])[0].schedulers["T"].parent.deadline for path in (newest, older)]
+    assert deadlines == [7 * MILLISECOND] * 2
 
 
 PLATFORM = """

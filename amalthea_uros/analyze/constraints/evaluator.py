@@ -21,7 +21,7 @@ from amalthea_uros.analyze.results.chains import ChainResult, LatencyQuantity
 from amalthea_uros.analyze.results.processes import RequirementResult
 from amalthea_uros.errors import UnknownError
 from amalthea_uros.judge.evidence import Ends
-from amalthea_uros.judge.limits import EventConstraint, SystemLimit, limits_of, without_number
+from amalthea_uros.judge.limits import NO_LIMIT, EventConstraint, SystemLimit, limits_of, without_number
 from amalthea_uros.judge.verdict import Judgement, prove, prove_kept, unknown
 from amalthea_uros.perf.constraints import (
     ChainEnd,
@@ -70,8 +70,7 @@ class ConstraintEvaluator:
                 for result in found:
                     report_implausible(result, constraint, self.evaluation.context.notes)
                 # What limits nothing is not met.
-                nothing = "it states no limit, or nothing in the model is limited by it"
-                yield from found or _unknown(constraint, limits, nothing)
+                yield from found or _unknown(constraint, limits, NO_LIMIT)
             except UnknownError as error:
                 yield from _unknown(constraint, limits, str(error))
             except Exception as error:
@@ -254,7 +253,7 @@ def _proved(limits: Iterable[SystemLimit], of: Callable[[SystemLimit], Ends]) ->
 
 def _of_order(constraint: OrderConstraint, what: str, holds: Callable[[], bool]) -> _Judged:
     """The verdict on an order of runnables, which has no number."""
-    limit = without_number(constraint, what, "order of runnables")
+    limit = without_number(constraint, what)
     try:
         return limit, prove_kept(holds())
     except UnknownError as error:

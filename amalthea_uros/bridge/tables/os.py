@@ -151,7 +151,8 @@ def _scheduler(element: am.TaskScheduler, allocations: SchedulerAllocations, con
     if association is not None:
         name = _SCHEDULER.extract(association.parent, context, element)
         definition = association.parent.definition if association.parent is not None else None
-        given = extract_parameters(association, context, definition.process_parameters if definition is not None else ())
+        defaults = definition.process_parameters if definition is not None else ()
+        given = extract_parameters(association, context, defaults, kept=element.custom_properties)
         if name is not None:
             parent = perf.Parent(scheduler=name, priority=given.priority, deadline=given.deadline, parameters=given.parameters)
     return perf.Scheduler(**_common(element, allocations, context), parent=parent)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from amalthea_uros.bridge.basics.codecs import build_time
 from amalthea_uros.bridge.basics.context import Building, Extracting
 from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.kept_properties import PARENT_PARAMETER, SCHEDULING_PARAMETER
 from amalthea_uros.metamodel.magnitudes import picoseconds
 from amalthea_uros.perf.named import Named
 from amalthea_uros.perf.os import SERVERS, Parameter, ParameterValue, Policy
@@ -219,18 +220,27 @@ def extract_policy(scheduler: Any) -> str | None:
     return None if algorithm is None else type(algorithm).__name__
 
 
-def extract_parameters(element: Any, context: Extracting, defaults: Iterable[am.SchedulingParameterDefinition] = ()) -> Given:
+def extract_parameters(
+    element: Any,
+    context: Extracting,
+    defaults: Iterable[am.SchedulingParameterDefinition] = (),
+    kept: Iterable[am.CustomProperty] | None = None,
+) -> Given:
     """The parameters of a process or scheduler, of any version.
 
     Parameters
     ----------
     defaults : definitions whose default values apply where no value is given
+    kept : properties of the scheduler whose association with its parent the element is; default: those of the element itself
     """
     priority: int | None = None
     deadline: int | None = None
     others: list[Parameter] = []
     stated = list(_stated(element, context))
     names = {name for name, _ in stated}
+    besides = _kept(element.custom_properties, SCHEDULING_PARAMETER) if kept is None else _kept(kept, PARENT_PARAMETER)
+    stated += [parameter for parameter in besides if parameter[0] not in names]
+    names |= {name for name, _ in stated}
     for name, values in (*(default for default in _defaults(defaults) if default[0] not in names), *stated):
         value = values[0]
         if name == PRIORITY and isinstance(value, int) and len(values) == 1:
@@ -263,6 +273,14 @@ def _stated(element: Any, context: Extracting) -> Iterable[tuple[str, tuple[Para
     for extension in getattr(element, "parameter_extensions", ()):
         if extension.key and extension.value:
             yield extension.key, (extension.value,)
+
+
+def _kept(properties: Iterable[am.CustomProperty], start: str) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:
+    """Parameters for which 1.2 and older have no feature, where a migration to such a version keeps them."""
+    for each in properties:
+        values = _extract_values(each.value)
+        if each.key and each.key.startswith(start) and values:
+            yield each.key.removeprefix(start), values
 
 
 def _stated_before(stated: am.SchedulingParameters) -> Iterable[tuple[str, tuple[ParameterValue, ...]]]:

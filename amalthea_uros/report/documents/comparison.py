@@ -32,7 +32,12 @@ _IMPORTANT = (
     ChainQuantity.REDUCED_REACTION_TIME,
     ChainQuantity.REDUCED_DATA_AGE,
 )
-_STATISTICS = (Statistic.MIN, Statistic.MEAN, Statistic.MAX)
+#: How the statistics that are shown are rounded: minimum and maximum outwards, as wherever they are shown.
+_ROUNDINGS: dict[Statistic | None, Rounding] = {
+    Statistic.MIN: Rounding.DOWN,
+    Statistic.MEAN: Rounding.NEAREST,
+    Statistic.MAX: Rounding.UP,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,13 +100,13 @@ class PredictionGroup:
     def deviations(self) -> str:
         """Those of minimum, mean and maximum."""
         found = {row.statistic: deviation_text(row) for row in self.rows}
-        texts = [found.get(statistic, "-") for statistic in _STATISTICS]
+        texts = [found.get(statistic, "-") for statistic in _ROUNDINGS]
         return texts[0] if len(set(texts)) == 1 else " / ".join(texts)
 
     @property
     def remark(self) -> str:
         """What else is outside, and why the verdict is what it is."""
-        others = [row for row in self.rows if row.verdict is not Agreement.WITHIN and row.statistic not in _STATISTICS]
+        others = [row for row in self.rows if row.verdict is not Agreement.WITHIN and row.statistic not in _ROUNDINGS]
         parts = [f"{row.statistic} {deviation_text(row)}" for row in others]
         if self.worst.reason or any(map(_depends_on_phase, self.rows)):
             parts.append(self.worst.reason or "nearest value of all phases")
@@ -110,7 +115,7 @@ class PredictionGroup:
     def times(self, is_measured: bool) -> str:
         """Minimum, mean and maximum."""
         found = {row.statistic: row.measured if is_measured else row.predicted for row in self.rows}
-        return " / ".join(_time(found.get(statistic)) for statistic in _STATISTICS)
+        return " / ".join(_time(found.get(statistic), rounding) for statistic, rounding in _ROUNDINGS.items())
 
 
 def worst_of(rows: Iterable[ComparisonRow]) -> ComparisonRow:
@@ -206,7 +211,7 @@ def _outcome(result: Comparison) -> str:
     outside = [row for row in result.rows if row.verdict is Agreement.OUTSIDE]
     if refuted:
         others = f"; {counted(len(refuted) - 1, 'other bound')} exceeded" if refuted[1:] else ""
-        return f"Model refuted: {_what(refuted[0])} is {time_text(refuted[0].measured or 0)}, {refuted[0].reason}{others}"
+        return f"Model refuted: {_what(refuted[0])} is {_extreme(refuted[0])}, {refuted[0].reason}{others}"
     if not result.compared:
         return "Nothing compared: no measured quantity is predicted"
     tolerance = f"{_percent(result.tolerance)} of the measurement"
@@ -268,7 +273,9 @@ def _missed(limits: Sequence[MeasuredLimit]) -> str:
         return ""
     first = limits[0]
     others = f", and {counted(len(limits) - 1, 'other limit')}" if limits[1:] else ""
-    value = f" is {_time(first.value)}," if first.value is not None and first.is_time else ""
+    if first.value is None and first.reason:
+        return f"limit missed: {first.object}: {first.reason}{others}"
+    value = f" is {_value_text(first)}," if first.value is not None and first.is_time else ""
     return f"limit missed: {first.quantity} of {first.object}{value} {_limit_text(first)}{others}"
 
 
@@ -301,6 +308,11 @@ def _limit_text(limit: MeasuredLimit) -> str:
     return directed_limit(value, is_upper=limit.is_upper)
 
 
+def _value_text(limit: MeasuredLimit) -> str:
+    """The measured value of the limited quantity, on its side of the limit."""
+    return _time(limit.value if limit.is_time else None, Rounding.UP if limit.is_upper else Rounding.DOWN, limit.limit)
+
+
 def _distribution_rows(result: Comparison) -> Iterator[tuple[str, ...]]:
     """The cells of the distributions that are shown: the distance, and both medians and 99 % quantiles."""
     for row in result.distributions:
@@ -324,8 +336,8 @@ def _loss_cells(row: LossRow) -> tuple[str, ...]:
     return row.object, words(row.quantity), f"{row.values:,}", f"{row.lost:,}", _percent(row.share), simulated
 
 
-def _time(value: Fraction | None) -> str:
-    return "-" if value is None else rounded_time_text(value, Rounding.NEAREST)
+def _time(value: Fraction | None, rounding: Rounding = Rounding.NEAREST, limit: Fraction | None = None) -> str:
+    return "-" if value is None else rounded_time_text(value, rounding, limit)
 
 
 def _prediction_cells(group: PredictionGroup) -> tuple[str, ...]:
@@ -356,25 +368,29 @@ def _bound_cells(test: BoundTest) -> tuple[str, ...]:
     return (
         test.rows[0].object,
         words(test.rows[0].quantity),
-        "-" if lower is None else _time(lower.predicted),
-        "-" if lower is None else _time(lower.measured),
-        "-" if upper is None else _time(upper.measured),
-        "-" if upper is None else _time(upper.predicted),
-        "-" if upper is None else _time(upper.bound_margin),
+        "-" if lower is None else _time(lower.predicted, Rounding.DOWN),
+        "-" if lower is None else _extreme(lower),
+        "-" if upper is None else _extreme(upper),
+        "-" if upper is None else _time(upper.predicted, Rounding.UP),
+        "-" if upper is None else _time(upper.bound_margin, Rounding.DOWN),
         str(test.rows[0].claim),
         str(test.verdict),
         test.reason,
     )
 
 
+def _extreme(row: ComparisonRow) -> str:
+    """A measured extreme value, on its side of the bound."""
+    return _time(row.measured, _ROUNDINGS.get(row.statistic, Rounding.NEAREST), row.predicted)
+
+
 def _limit_cells(limit: MeasuredLimit) -> tuple[str, ...]:
     """The cells of a limit."""
-    rounding = Rounding.UP if limit.is_upper else Rounding.DOWN
     return (
         limit.name,
         limited_text(limit.quantity, limit.object),
         _limit_text(limit),
-        rounded_time_text(limit.value, rounding, limit.limit) if limit.is_time and limit.value is not None else "-",
+        _value_text(limit),
         f"{limit.samples:,}",
         words(limit.verdict),
         limit.reason,

@@ -24,7 +24,7 @@ _FIGURES = ("~>n", ">min", ">mean", ">max", "~~>std", "~~~~>peak to peak", "~~~>
 COLUMNS = ("object", "quantity", *_FIGURES)
 _NET = ("object", "quantity", ">empty (min / mean / max)", ">at least", ">at most")
 _PERIODS = ("object", "quantity", ">period", ">largest deviation")
-_COUNTS = ("object", ">incomplete", ">lost", ">duplicated", ">reordered")
+_COUNTS = ("object", ">incomplete", ">lost", ">duplicated", ">reordered", ">lost activations")
 P99 = Fraction(99, 100)
 _RARE = (JobMetric.WAITING_TIME, JobMetric.POLLING_TIME, JobMetric.PARKING_TIME)
 #: With this probability no more exceed the maximum than `exceedance` says, if the values are independent: 1 - 0.05^(1/n) < 3/n.
@@ -86,7 +86,7 @@ def count_rows(measurement: Measurement) -> Iterator[tuple[str, ...]]:
         if series.name not in seen and series.counts != none:
             seen.add(series.name)
             counts = series.counts
-            numbers = (counts.incomplete, counts.lost, counts.duplicated, counts.reordered)
+            numbers = (counts.incomplete, counts.lost, counts.duplicated, counts.reordered, counts.lost_activations)
             yield series.name, *(f"{number:,}" for number in numbers)
 
 

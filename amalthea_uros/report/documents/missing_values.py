@@ -11,12 +11,10 @@ from amalthea_uros.report.basics.document import Listing, Section, lines, sectio
 from amalthea_uros.report.basics.escape import visible
 from amalthea_uros.services.analyze import AnalysisResult
 
-_HEADING = "To get numbers, state"
-_TOGETHER = "Files that belong together are given together, such as: amuros analyze software.amxmi hardware.amxmi mapping.amxmi"
-_NO_PROCESSES = f"which tasks there are: the model has none, and no interrupts. {_TOGETHER}"
-_NO_SCHEDULERS = (
-    f"which scheduler executes each task, on which core: no scheduler of the model is responsible for a core. {_TOGETHER}"
-)
+_HEADING = "To get numbers"
+_TOGETHER = "give all files of the model in one command, e.g. amuros analyze software.amxmi hardware.amxmi mapping.amxmi"
+_NO_PROCESSES = f"The model has no tasks and no interrupts: add them, or {_TOGETHER}"
+_NO_SCHEDULERS = f"No scheduler of the model is responsible for a core: allocate tasks and cores to schedulers, or {_TOGETHER}"
 
 
 def missing_section(result: AnalysisResult) -> Section:
@@ -29,7 +27,7 @@ def missing_section(result: AnalysisResult) -> Section:
     if not result.missing.changes:
         return section(_HEADING, *unallocated)
     number = counted(len(result.missing.gained), "more process")
-    said = f"These values are examples; with yours in their place, {number} can have a response time:"
+    said = f"State these values, which are examples; with yours in their place, {number} can have a response time:"
     return section(_HEADING, *unallocated, lines(said), Listing("", [*_command(result, result.missing), *_allocation(result)]))
 
 

@@ -17,6 +17,7 @@ from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Verdict
 from amalthea_uros.report.basics.document import Block, ResultDocument, Section, Sentences, document, section, table
 from amalthea_uros.report.wording.cells import UNKNOWN, about, at_least, at_most, load_text, words
+from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.report.wording.impact import impact_cells
 from amalthea_uros.units import Rounding, number_text, rounded, time_text
 
@@ -30,8 +31,9 @@ if TYPE_CHECKING:
     from amalthea_uros.design.proposals import DesignProposal, LimitRow
     from amalthea_uros.services.optimize import Optimization
 
-#: More values of a choice are only counted, and further drawbacks.
-_MOST_OPTIONS, _MOST_CHOICES, _MOST_DRAWBACKS = 6, 12, 6
+_NOTHING = "nothing: allow more with --vary or --offer"
+#: More values of a choice are only counted, and further drawbacks and violations.
+_MOST_OPTIONS, _MOST_CHOICES, _MOST_DRAWBACKS, _MOST_VIOLATIONS = 6, 12, 6, 3
 #: Larger numbers have an exponent.
 _LONG = 10**15
 _GOALS = {
@@ -55,11 +57,11 @@ def optimization_document(result: Optimization) -> ResultDocument:
 
 
 def _question(result: Optimization) -> Sentences:
-    rows = [("may change", line) for line in _space_lines(result.space)] or [("may change", "nothing")]
+    rows = [("may change", line) for line in list(_space_lines(result.space)) or [_NOTHING]]
     rows.append(("must hold", "all deadlines, requirements and constraints of the model"))
     rows += [("", _limit_text(limit)) for limit in result.limits]
     rows += [("then" if number else "minimised", _GOALS.get(goal.name, goal.name)) for number, goal in enumerate(result.goals)]
-    rows.append(("now", _present(result)))
+    rows += [("now", line) for line in _present(result)]
     names = [name for name, _ in rows]
     firsts = ["" if name == before else name for name, before in zip(names, ["", *names], strict=False)]
     return Sentences([f"{first:<10}  {text}" for first, (_, text) in zip(firsts, rows, strict=True)])
@@ -87,14 +89,20 @@ def _limit_text(limit: Limit) -> str:
     return f"{limit.target} {'<' if limit.is_below else '<='} {maximum}" + (f" ({limit.reason})" if limit.reason else "")
 
 
-def _present(result: Optimization) -> str:
-    violations = ", ".join(result.present.violations)
-    match result.present.feasible:
-        case Feasibility.YES:
-            return "all limits are met"
-        case Feasibility.NO:
-            return f"not met: {violations or 'something is overloaded'}"
-    return f"unknown: {violations or 'nothing is demanded of the model'}"
+def _present(result: Optimization) -> Iterator[str]:
+    """Whether the present design meets all limits, else which ones it does not, and why."""
+    if result.present.feasible is Feasibility.YES:
+        yield "all limits are met"
+        return
+    names = list(result.present.violations)
+    more = f" and {len(names) - _MOST_VIOLATIONS} more" if names[_MOST_VIOLATIONS:] else ""
+    violations = "; ".join(names[:_MOST_VIOLATIONS]) + more
+    if result.present.feasible is Feasibility.NO:
+        yield f"not met: {violations or 'something is overloaded'}"
+    else:
+        yield f"unknown: {violations or 'nothing is demanded of the model'}"
+    if result.before.summary.schedulable is not Schedulable.YES:
+        yield closing_line(result.before.summary)
 
 
 def _proposal(result: Optimization, number: int, proposal: DesignProposal) -> Section:

@@ -26,6 +26,8 @@ from amalthea_uros.report.basics.document import (
 )
 from amalthea_uros.report.documents.changes import impact_section
 from amalthea_uros.report.wording.cells import (
+    about,
+    at_most,
     badge,
     by_core_and_priority,
     deadline_text,
@@ -45,24 +47,24 @@ from amalthea_uros.simulate.observations import (
     ProcessObservation,
     RequirementObservation,
 )
-from amalthea_uros.simulate.results import IDLE, Judged, Simulation
+from amalthea_uros.simulate.results import Judged, Simulation
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT, consequence_of
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric
-from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, rounded_time_text, time_text
+from amalthea_uros.units import NANOSECOND, SECOND, Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
 _MINUTE = 60 * SECOND
 REMINDER = "Observed values are no bounds; for bounds use `amuros analyze`."
 
 
 def duration_text(duration: Time) -> str:
-    """A duration, in minutes if it is a number of them: "5 min", "1.5 s"."""
-    return f"{duration // _MINUTE} min" if duration % _MINUTE == 0 else time_text(duration)
+    """A duration, in minutes if it is a number of them: "5 min", "1.5 s"; one that was measured has four digits."""
+    return f"{duration // _MINUTE} min" if duration % _MINUTE == 0 else about(duration)
 
 
 def closing_line(simulation: Simulation) -> str:
     """What was missed, or what came closest to its limit; and that this is no bound."""
     run = f"Observed over {duration_text(simulation.duration)} (seed {simulation.seed})"
-    parts = filter(None, (_incomplete(simulation), _missed(simulation), _not_observed(simulation)))
+    parts = filter(None, (simulation.incomplete, _missed(simulation), _not_observed(simulation)))
     return f"{run}: {'; '.join(parts)}. {REMINDER}"
 
 
@@ -78,13 +80,6 @@ def value_text(requirement: RequirementObservation, value: Fraction | None) -> s
     if value is None:
         return "-"
     return time_text(round(value)) if requirement.is_time else number_text(value)
-
-
-def _incomplete(simulation: Simulation) -> str:
-    """The first thing that was not simulated, and the number of the others; whether nothing at all was."""
-    idle, errors = [each for each in simulation.errors if each == IDLE], [each for each in simulation.errors if each != IDLE]
-    others = [counted(len(errors) - 1, "other error")] if errors[1:] else []
-    return "; ".join([": ".join([*idle, *errors[:1]]), *others])
 
 
 def _missed(simulation: Simulation) -> str:
@@ -111,12 +106,13 @@ def _failure(item: Judged) -> str:
         if item.value is None or item.limit is None:
             return f"{what}: {item.reason}"
         reason = f" ({item.reason})" if item.reason else ""
-        return f"{what} is {value_text(item, item.value)}{reason}, limit {limit_text(item)}"
+        return f"{what} is {_observed_text(item)}{reason}, limit {limit_text(item)}"
     is_late = item.response_time is not None and item.deadline is not None and item.response_time.max > item.deadline
     if item.response_time is None or (item.reason and not is_late):
         return f"{item.name}: {item.reason}"
     kind = "period" if item.is_implicit else "deadline"
-    late = f"{item.name} responds after {time_text(round(item.response_time.max))}, {kind} {time_text(item.deadline or 0)}"
+    after = at_most(item.response_time.max, item.deadline)
+    late = f"{item.name} responds after {after}, {kind} {time_text(item.deadline or 0)}"
     return f"{late}; {item.reason}" if item.reason else late
 
 
@@ -286,23 +282,28 @@ def _requirements(simulation: Simulation) -> Table:
 
 
 def _requirement(requirement: RequirementObservation) -> tuple[Cell, ...]:
-    rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
     return (
         requirement.name,
         limited_text(requirement.quantity, requirement.object),
         limit_text(requirement),
-        _rounded(requirement, requirement.value, rounding, requirement.limit),
+        _observed_text(requirement),
         badge(requirement.verdict),
         "" if requirement.margin is None else _rounded(requirement, requirement.margin, Rounding.DOWN),
         _remark(requirement),
     )
 
 
+def _observed_text(requirement: RequirementObservation) -> str:
+    """The observed value of the limited quantity, on its side of the limit."""
+    rounding = Rounding.UP if requirement.is_upper else Rounding.DOWN
+    return _rounded(requirement, requirement.value, rounding, requirement.limit)
+
+
 def _rounded(
     requirement: RequirementObservation, value: Fraction | None, rounding: Rounding, limit: Fraction | None = None
 ) -> str:
     if value is None or not requirement.is_time:
-        return value_text(requirement, value)
+        return value_text(requirement, None if value is None else rounded(value, rounding, limit))
     return rounded_time_text(value, rounding, limit)
 
 

@@ -87,7 +87,7 @@ declare(
     "method",
 )
 declare(TimeStatistics, "min_ps", ("avg_ps", "mean"), "max_ps", "std_ps", (ALSO, _percentiles))
-declare(Counts, *("incomplete", "lost", "duplicated", "reordered"))
+declare(Counts, *("incomplete", "lost", "duplicated", "reordered", "lost_activations"))
 
 
 def _range(row: ComparisonRow) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.judge.verdict import Failure
 from amalthea_uros.report.wording.cells import directed_limit, limited_text
 from amalthea_uros.timing.activation.load import unit_hint
-from amalthea_uros.units import Rounding, number_text, rounded, rounded_time_text, time_text
+from amalthea_uros.units import Rounding, Time, number_text, rounded, rounded_time_text, time_text
 
 #: Reasons that are only consequences of other reasons end like this.
 _CONSEQUENCE = "could not be analysed"
@@ -72,7 +72,7 @@ def _failure(item: Judged) -> str:
     if item.failure is Failure.LOST:
         # With what is lost, the greatest response time need not occur again.
         ends = Ends.exactly(ends.upper or 0)
-    text = f"{item.name} responds after {_ends_text(ends)}, {kind} {time_text(item.deadline or 0)}"
+    text = f"{item.name} responds after {_ends_text(ends, item.deadline)}, {kind} {time_text(item.deadline or 0)}"
     return f"{text}, and loses activations" if item.failure is Failure.LOST else text
 
 
@@ -82,18 +82,20 @@ def _violation(requirement: RequirementResult) -> str:
         return f"{what} violates {requirement.name}"
     ends = Ends(requirement.lower, requirement.upper)
     limit = f"limit {directed_limit(time_text(requirement.limit), is_upper=requirement.is_upper)}"
-    return f"{what} is {_ends_text(ends, requirement.is_upper)}, {limit}" + (
+    return f"{what} is {_ends_text(ends, requirement.limit, requirement.is_upper)}, {limit}" + (
         f" ({requirement.reason})" if requirement.reason else ""
     )
 
 
-def _ends_text(ends: Ends, is_upper: bool = True) -> str:
-    """The end of a maximum or minimum that violates its limit."""
+def _ends_text(ends: Ends, limit: Time | None, is_upper: bool = True) -> str:
+    """The end of a maximum or minimum that violates its limit, rounded as in tables."""
     if ends.upper is None and is_upper:
         return "unbounded"
     known = ends.lower if is_upper else ends.upper
-    text = time_text(known or 0)
-    return text if ends.lower == ends.upper else f"at {'least' if is_upper else 'most'} {text}"
+    is_exact = ends.lower == ends.upper
+    # "At least" stays true if rounded down, "at most" if rounded up.
+    text = rounded_time_text(known or 0, Rounding.UP if is_exact is is_upper else Rounding.DOWN, limit)
+    return text if is_exact else f"at {'least' if is_upper else 'most'} {text}"
 
 
 def _unknown(summary: SystemSummary) -> str:

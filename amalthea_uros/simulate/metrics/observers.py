@@ -8,7 +8,7 @@ import numpy as np
 
 from amalthea_uros._internal.arrays import Flags, Numbers
 from amalthea_uros._internal.records import dataclass, field
-from amalthea_uros.judge.limits import EventConstraint
+from amalthea_uros.judge.limits import NO_LIMIT, EventConstraint, limits_of
 from amalthea_uros.perf.constraints import (
     ChainSynchronization,
     Constraint,
@@ -207,6 +207,8 @@ class Observers:
             names, sources = ", ".join(scope.processes), [source for source in together if source is not None]
             found.append(self._tables_of(ExecutionOrder(order, self.program.units, processes=names, sources=sources)))
         self._of_constraints[id(order)] = found
+        if not found:
+            self._reasons[id(order)] = "no process that calls its runnables is simulated"
 
     def _sources(self, event: Event) -> Iterator[EventSource]:
         return (source for source in self.program.sources if is_source(source, event))
@@ -259,7 +261,7 @@ class Observers:
 
     def reason(self, constraint: EventConstraint) -> str:
         """Why nothing was observed of a constraint."""
-        return self._reasons.get(id(constraint), "it states no limit, or nothing that is simulated is limited by it")
+        return self._reasons.get(id(constraint), "it names no events" if limits_of(constraint) else NO_LIMIT)
 
     def labels(self) -> Iterator[LabelObservation]:
         """What was observed of the labels that were asked for."""

@@ -42,7 +42,7 @@ class OrderMetrics(ConstraintMetrics):
         self._first_wrong = time if self._first_wrong < 0 else self._first_wrong
 
     def quantities(self, end: int) -> Iterator[LimitedQuantity]:  # noqa: D102
-        yield LimitedQuantity(without_number(self.constraint, self.processes, "order of runnables"), self._values(end))
+        yield LimitedQuantity(without_number(self.constraint, self.processes), self._values(end))
 
     def _of(self, total: str, reason: str) -> ObservedValues:
         """The number of those in another order, of all that there were, or the reason why it is not known."""

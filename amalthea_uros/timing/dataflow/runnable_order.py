@@ -57,8 +57,11 @@ def _scope(constraint: OrderConstraint, system: System, events: EventLocator) ->
     callers = {process: {called_runnable(call) for call in found} for process, found in calls.items() if found}
     everywhere = set().union(*callers.values())
     elsewhere = [name for name in sorted(wanted - everywhere) for other in system.processes if _calls(other, {name}, events)]
-    if callers and elsewhere:
+    if elsewhere:
         raise UnknownError(f"{elsewhere[0]!r} is only called by processes outside of the scope")
+    if not callers:
+        first = next((name for group in constraint.groups for name in group), None)
+        raise UnknownError(f"no process calls its runnables, such as {first!r}" if first else "it names no runnables")
     if everywhere < wanted or all(names == wanted for names in callers.values()):
         for call in (call for found in calls.values() for call in found):
             _require_direct(call)

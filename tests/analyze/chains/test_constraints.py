@@ -69,7 +69,7 @@ def repetition(event=EVENTS[2].name, **limits):
         (replace(latency(maximum=9), kind=LatencyKind.AGE), [("data age", 10, "missed")]),
         (replace(latency(maximum=1), chain="none"), [("reaction", None, "unknown")]),
         # Without a limit it is not met.
-        (latency(), [("LatencyConstraint", None, "unknown")]),
+        (latency(), [("reaction", None, "unknown")]),
         (delay(MADE, OUT, lower=10, upper=19), [("delay", 20, "missed"), ("delay", 10, "met")]),
         # Occurrences that belong together one by one.
         (delay(MADE, EVENTS[1].name, matching=Matching.ONE_TO_ONE, upper=5), [("delay", 5, "met")]),
@@ -203,6 +203,29 @@ def test_the_order_of_runnables(groups, ordering, verdict):
     built = system([("T", 10, [Call(runnable=name) for name in "abc"])], [at("T", START), at("T", END)], runnables=runnables)
     order = OrderConstraint(name="O", groups=tuple(map(tuple, groups)), ordering=ordering)
     assert evaluate(built=built, orders=[order]) == [("order of runnables", None, verdict)]
+
+
+@pytest.mark.parametrize(
+    ("groups", "processes", "reason"),
+    [
+        ((("d",), ("e",)), (), "no process calls its runnables, such as 'd'"),
+        ((("a",), ("b",)), ("U",), "'a' is only called by processes outside of the scope"),
+        ((), (), "it names no runnables"),
+    ],
+)
+def test_an_order_that_limits_nothing_is_unknown_with_the_cause(groups, processes, reason):
+    runnables = [Runnable(name=name, activities=(ticks(1),)) for name in "abde"]
+    bodies = [("T", 10, [Call(runnable="a"), Call(runnable="b")]), ("U", 10, [ticks(1)])]
+    built = system(bodies, [at("T", START)], runnables=runnables)
+    order = OrderConstraint(name="O", groups=groups, processes=processes)
+    (found,) = analyze_system(replace(built, constraints=Constraints(orders=(order,)))).requirements
+    assert (found.quantity, str(found.verdict), found.reason) == ("order of runnables", "unknown", reason)
+
+
+def test_a_constraint_without_limits_is_unknown_with_the_cause():
+    built = producer_and_consumer(*EVENTS)
+    (found,) = analyze_system(replace(built, constraints=Constraints(constraints=(delay(MADE, OUT),)))).requirements
+    assert (found.quantity, found.object, found.reason) == ("delay", f"{MADE} to {OUT}", "it states no limit")
 
 
 def body(kind):

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypeAlias
 
+from amalthea_uros.metamodel.kept_properties import prefix
 from amalthea_uros.metamodel.source import FileText
 from amalthea_uros.xmi.migrate.steps.kept import (
     DEFINITION,
@@ -23,7 +24,6 @@ from amalthea_uros.xmi.migrate.steps.kept import (
     as_map,
     keep,
     kept,
-    prefix,
     strings,
 )
 from amalthea_uros.xmi.migrate.steps.scheduling import (

@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
+from amalthea_uros.metamodel.kept_properties import PARENT_PARAMETER, SCHEDULING_PARAMETER, prefix
 from amalthea_uros.xmi.migrate.steps.scheduling import QUANTUM, TASK_GROUP, USER_SPECIFIC
 from amalthea_uros.xmi.migrate.steps.tools import property_of, put_property, text_value
 from amalthea_uros.xmi.tree.model_set import ModelSet
 from amalthea_uros.xmi.tree.node import Node, remove_all
 from amalthea_uros.xmi.tree.notes import StepNotes
-
-
-def prefix(version: str) -> str:
-    """What the keys of all properties start with that keep content of that version."""
-    return f"AMALTHEA {version}: "
 
 
 def keep(holder: Node, key: str, value: Node) -> Node:
@@ -166,14 +162,14 @@ DEFINITION = _START_2_0_0 + "definition"
 DEFINITIONS = {tag: f"{_START_2_0_0}{tag}/" for tag in ("schedulerDefinitions", "schedulingParameterDefinitions")}
 
 
-def _parameter_keys(start: str) -> ParameterKeys:
-    return ParameterKeys(*(start + what for what in ("schedulingParameters/", "order of schedulingParameters", "defaults")))
+def _parameter_keys(start: str, parameter: str) -> ParameterKeys:
+    return ParameterKeys(parameter, *(start + what for what in ("order of schedulingParameters", "defaults")))
 
 
 #: Parameters of a scheduler or allocation.
-OWN = _parameter_keys(_START_2_0_0)
+OWN = _parameter_keys(_START_2_0_0, SCHEDULING_PARAMETER)
 #: Parameters of the association of a scheduler with its parent, which has no custom properties itself.
-OF_ASSOCIATION = _parameter_keys(_START_2_0_0 + "parentAssociation/")
+OF_ASSOCIATION = _parameter_keys(_START_2_0_0 + "parentAssociation/", PARENT_PARAMETER)
 #: Custom properties of processes that the step up would take for parameters; their keys follow.
 PROPERTY = _START_2_0_0 + "customProperties/"
 
