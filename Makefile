@@ -74,11 +74,12 @@ site: $(READY)
 wheel: $(READY)
 	$(BIN)/python -m hatchling build --directory $(DIST)
 
+# What builds the package is installed first, so that pip makes no environment of its own for that.
 $(READY): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, set PYTHON=...")'
 	$(PYTHON) -m venv $(VENV)
-	$(INSTALL) --upgrade pip
-	$(INSTALL) --editable '.[dev]'
+	$(INSTALL) --upgrade pip hatchling editables
+	$(INSTALL) --no-build-isolation --editable '.[dev]'
 	@touch $@
 
 clean:
