@@ -120,12 +120,14 @@ class Dimension(NamedTuple):
     units : unit -> its size in the internal unit
     example : a value
     whole : plural of the internal unit if values are whole numbers of it, else ""
+    least : the smallest value besides zero
     """
 
     article: str
     units: Mapping[str, int]
     example: str
     whole: str = ""
+    least: Fraction = Fraction(0)
 
 
 TIME = Dimension(
@@ -144,7 +146,10 @@ TIME = Dimension(
     "10 ms",
     "picoseconds",
 )
-FREQUENCY = Dimension("a frequency", {"Hz": 1, "kHz": 10**3, "MHz": 10**6, "GHz": 10**9}, "50 Hz")
+#: The period of the lowest frequency is the longest time.
+FREQUENCY = Dimension(
+    "a frequency", {"Hz": 1, "kHz": 10**3, "MHz": 10**6, "GHz": 10**9}, "50 Hz", least=Fraction(SECOND, _LIMIT - 1)
+)
 DATA_SIZE = Dimension("a data size", _data_units(), "4 B", "bits")
 BIT_RATE = Dimension("a bit rate", _data_units("/s"), "250 kbit/s", "bits per second")
 
@@ -168,7 +173,7 @@ def parse(text: str, dimension: Dimension) -> Fraction:
     if unit not in dimension.units:
         raise ValueError(f"{shortened(unit)!r} is not a unit of {dimension.article.split(' ', 1)[1]}{_advice(unit, dimension)}")
     value = Fraction(number) * dimension.units[unit]
-    if abs(value) >= _LIMIT:
+    if abs(value) >= _LIMIT or 0 < abs(value) < dimension.least:
         raise ValueError(f"{text.strip()!r} is out of range")
     if dimension.whole and value.denominator != 1:
         raise ValueError(f"{text.strip()!r} is not a whole number of {dimension.whole}")

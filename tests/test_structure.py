@@ -47,7 +47,7 @@ LINES = {
     "spec": 3023,
     "timing": 5795,
     "trace": 4784,
-    "units": 207,
+    "units": 210,
     "uros": 7878,
     "validate": 3267,
     "xmi": 8618,

@@ -60,6 +60,13 @@ def test_what_is_no_time(text, reason):
         units.parse_time(text)
 
 
+@pytest.mark.parametrize("text", ["1e-400 Hz", "0.0000001 Hz", "-1e-8 Hz", "1e10 GHz"])
+def test_the_period_of_a_frequency_is_a_time(text):
+    with pytest.raises(ValueError, match="out of range"):
+        units.parse_frequency(text)
+    assert units.parse_frequency("0.00000011 Hz") == Fraction(11, 10**8)
+
+
 @pytest.mark.parametrize(
     ("picoseconds", "text"),
     [
