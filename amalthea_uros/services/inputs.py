@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.files import reading_once
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
@@ -47,6 +48,7 @@ def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
     return found
 
 
+@reading_once()
 def open_model(paths: Sequence[StrPath]) -> ModelInput:
     """The AMALTHEA model of files.
 
