@@ -18,14 +18,14 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 1190,
+    "_internal": 1197,
     "_version": 1,
     "am": 2,
     "analyze": 9289,
     "bridge": 2890,
     "cli": 2615,
     "compare": 3834,
-    "design": 6699,
+    "design": 6690,
     "diagnostics": 43,
     "difference": 790,
     "editor": 653,
@@ -41,8 +41,8 @@ LINES = {
     "perf": 1838,
     "platforms": 0,
     "report": 8642,
-    "services": 2702,
-    "simulate": 8631,
+    "services": 2716,
+    "simulate": 8634,
     "source": 3713,
     "spec": 3023,
     "timing": 5792,
@@ -50,7 +50,7 @@ LINES = {
     "units": 207,
     "uros": 7878,
     "validate": 3267,
-    "xmi": 8619,
+    "xmi": 8616,
 }
 
 #: Files may import from this many modules at most; those of the table do so still, and none more.
@@ -61,7 +61,7 @@ MORE_IMPORTS = {
     "services/analyze.py": 30,
     "services/check.py": 29,
     "services/report.py": 31,
-    "services/simulate.py": 30,
+    "services/simulate.py": 31,
     "timing/context.py": 28,
 }
 #: The public interface imports what it exports.
