@@ -70,7 +70,11 @@ def test_messages_may_be_rarer_than_stated():
     ("also", "interval", "reason"),
     [
         ("t", "100 ms", "more than one publisher sends 't'"),
-        ("", "110 ms", "the controller itself can send the messages of 'Take' every 100 ms, but the subscription states 110 ms"),
+        (
+            "",
+            "110 ms",
+            "the controller itself can send the messages of 'Take' every 100 ms, but the subscription states 110 ms",
+        ),
     ],
 )
 def test_messages_that_come_otherwise_than_stated_are_unknown(also, interval, reason):
