@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1197,
     "_version": 1,
     "am": 2,
-    "analyze": 9291,
+    "analyze": 9293,
     "bridge": 2890,
     "cli": 2615,
     "compare": 3834,
