@@ -18,14 +18,14 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 1164,
+    "_internal": 1197,
     "_version": 1,
     "am": 2,
-    "analyze": 9279,
+    "analyze": 9283,
     "bridge": 2905,
-    "cli": 2614,
-    "compare": 3840,
-    "design": 6699,
+    "cli": 2615,
+    "compare": 3841,
+    "design": 6702,
     "diagnostics": 43,
     "difference": 790,
     "editor": 653,
@@ -40,9 +40,9 @@ LINES = {
     "names": 17,
     "perf": 1838,
     "platforms": 0,
-    "report": 8658,
-    "services": 2687,
-    "simulate": 8630,
+    "report": 8703,
+    "services": 2716,
+    "simulate": 8634,
     "source": 3719,
     "spec": 3023,
     "timing": 5795,
@@ -50,7 +50,7 @@ LINES = {
     "units": 210,
     "uros": 7878,
     "validate": 3267,
-    "xmi": 8618,
+    "xmi": 8615,
 }
 
 #: Files may import from this many modules at most; those of the table do so still, and none more.
@@ -59,9 +59,9 @@ MORE_IMPORTS = {
     "cli/compare.py": 26,
     "report/records.py": 33,
     "services/analyze.py": 30,
-    "services/check.py": 28,
+    "services/check.py": 29,
     "services/report.py": 31,
-    "services/simulate.py": 30,
+    "services/simulate.py": 31,
     "timing/context.py": 28,
 }
 #: The public interface imports what it exports.

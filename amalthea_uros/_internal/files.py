@@ -7,7 +7,7 @@ import io
 import os
 import stat
 import sys
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, MutableMapping
 from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
 from enum import Enum, auto
@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import IO, BinaryIO
 
-from amalthea_uros._internal.limits import ADVICE, MODEL_SIZE
+from amalthea_uros._internal.limits import ADVICE, DESCRIPTION_SIZE, MODEL_SIZE
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -38,6 +38,8 @@ _MAX_LINKS = 40
 
 #: Contents that are read instead of those of files.
 _OVERLAY: ContextVar[Mapping[Path, bytes]] = ContextVar("overlay", default={})  # noqa: B039 - nobody changes it
+#: What has been read by what runs at present, None where each reader reads for itself.
+_KEPT: ContextVar[MutableMapping[Path, bytes] | None] = ContextVar("kept", default=None)
 
 #: What a path can be wrong by: a path with a zero byte is a ValueError, one in a circle of links a RuntimeError before Python 3.13.
 _IMPOSSIBLE = (OSError, ValueError, RuntimeError)
@@ -79,23 +81,56 @@ def read_bytes(path: Path, max_size: int) -> bytes:
     ------
     FileError : more than `max_size` bytes, not found, not permitted, or a directory.
     """
-    overlay = _OVERLAY.get()
-    if path in overlay:
-        return _limited(overlay[path], path, max_size)
+    kept = _KEPT.get()
+    for contents in (_OVERLAY.get(), kept or {}):
+        if path in contents:
+            return _limited(contents[path], path, max_size)
+    data = _limited(_read(path, max_size), path, max_size)
+    # Models are read once; their bytes would take memory beside their text.
+    if kept is not None and (max_size <= DESCRIPTION_SIZE or is_stream(path)):
+        kept[path] = data
+    return data
+
+
+def _read(path: Path, max_size: int) -> bytes:
+    """The content of a file, or more of it than `max_size`."""
     try:
         if path == STANDARD_INPUT:
-            return _limited(_standard_input(), path, max_size)
+            return _standard_input()
         if path.is_dir():
             raise FileError(path, "expected a file, found a directory")
         with path.open("rb") as stream:
             # Asked for at once, the limit would be reserved as memory: `stream.read(limit)` makes a buffer of that size.
             size = os.fstat(stream.fileno()).st_size
-            data = read_up_to(stream, max_size + 1, max(size + 1, _BLOCK))
+            return read_up_to(stream, max_size + 1, max(size + 1, _BLOCK))
     except FileNotFoundError:
         raise FileError(path, "file not found", "Check the path.") from None
     except (OSError, ValueError) as error:
         raise FileError(path, f"the file cannot be read: {_cause(error)}") from None
-    return _limited(data, path, max_size)
+
+
+@contextmanager
+def reading_once() -> Iterator[None]:
+    """Read each description and each pipe once while the block runs, in this thread, and keep the content for further readers.
+
+    A pipe has nothing for a second reader, and all of them see the same text, even if the file is changed or removed meanwhile. What
+    is written in the block is read again. A block in another one uses the contents of that one.
+    """
+    if _KEPT.get() is not None:
+        yield
+        return
+    token = _KEPT.set({})
+    try:
+        yield
+    finally:
+        _KEPT.reset(token)
+
+
+def _forget_files() -> None:
+    """Read files again from now on, because some were written; a path can lead to any of them."""
+    kept = _KEPT.get() or {}
+    for path in [each for each in kept if not is_stream(each)]:
+        del kept[path]
 
 
 @contextmanager
@@ -190,6 +225,7 @@ def write_all(contents: Mapping[Path, bytes], removed: Collection[Path] = ()) ->
             except OSError as error:
                 raise not_writable(path, error) from None
         undo.pop_all()
+        _forget_files()
         for copy in filter(None, former.values()):
             copy.unlink(missing_ok=True)
 
@@ -229,6 +265,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
         except OSError as error:
             raise not_writable(path, error) from None
         undo.pop_all()
+        _forget_files()
         if former is not None:
             former.unlink(missing_ok=True)
 
@@ -281,6 +318,11 @@ def _descriptor(path: Path) -> int | None:
                 return None
             path = path.parent / path.readlink()
     return None
+
+
+def is_open_file(path: Path) -> bool:
+    """Whether a path stands for an open file of this process: standard input, or what a shell puts in place of `<(command)`."""
+    return path == STANDARD_INPUT or _descriptor(path) is not None
 
 
 def is_standard_output(path: Path) -> bool:

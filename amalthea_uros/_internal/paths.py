@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from os import PathLike
 from pathlib import Path
 
-from amalthea_uros._internal.files import STANDARD_INPUT, FileError, read_bytes
+from amalthea_uros._internal.files import FileError, is_open_file, is_stream, read_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE, MODEL_SIZE
 
 StrPath = str | PathLike[str]
@@ -23,20 +23,25 @@ _KEY = re.compile(rb"""^(?:\xef\xbb\xbf)?["']?amuros["']?[ \t]*:""", re.MULTILIN
 _MODEL_STARTS = (b"<", b"\xef\xbb\xbf<", b"\xff\xfe", b"\xfe\xff", b"PK")
 
 
+def has_description_name(path: StrPath) -> bool:
+    """Whether a file to be written is an `app.yaml`."""
+    return Path(path).suffix in _DESCRIPTION_SUFFIXES
+
+
 def is_description(path: StrPath) -> bool:
-    """Whether a file is an `app.yaml`, by its name; standard input, by its content."""
+    """Whether a file is an `app.yaml`, by its name; a pipe or standard input without such a name, by its content."""
     file = Path(path)
-    if file == STANDARD_INPUT:
-        try:
-            return not read_bytes(file, MODEL_SIZE).lstrip().startswith(_MODEL_STARTS)
-        except FileError:
-            return False
-    return file.suffix in _DESCRIPTION_SUFFIXES
+    if has_description_name(file) or not is_stream(file):
+        return has_description_name(file)
+    try:
+        return not read_bytes(file, MODEL_SIZE).lstrip().startswith(_MODEL_STARTS)
+    except FileError:
+        return False
 
 
 def folder_of(path: Path) -> Path:
-    """The folder to which relative paths in a file refer; for standard input, the current one."""
-    return Path() if path == STANDARD_INPUT else path.parent
+    """The folder to which relative paths in a file refer; for an open file such as standard input, the current one."""
+    return Path() if is_open_file(path) else path.parent
 
 
 def is_other_yaml(path: Path) -> bool:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros._internal.files import STANDARD_INPUT, is_stream
 from amalthea_uros.cli.output import Output, beside_files, output_option, show_text, write_outputs
 from amalthea_uros.cli.parameters import INPUT, OUTPUT, Several, several
 from amalthea_uros.diagnostics import Severity
@@ -89,8 +89,8 @@ def check(
     """
     if show_diff and not fix:
         raise click.UsageError("--diff shows what --fix would change; add --fix")
-    if fix and STANDARD_INPUT in paths:
-        raise click.UsageError("--fix repairs files; standard input cannot be repaired")
+    if fix and any(map(is_stream, paths)):
+        raise click.UsageError("--fix repairs files; standard input and pipes cannot be repaired")
     if [*paths, *rule_files, baseline].count(STANDARD_INPUT) > 1:
         raise click.UsageError("standard input can be only one of the files that are read")
     outputs = beside_files(outputs, [("--write-baseline", new_baseline)])

@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from amalthea_uros._internal.files import reading_once
 from amalthea_uros.cli.patience import WORK, with_progress
 from amalthea_uros.cli.watch import repeat_on_change
 from amalthea_uros.report.basics.display import DISPLAY, Colours, Display
@@ -16,8 +17,8 @@ _WATCHING = frozenset({"analyze", "build", "check", "report"})
 
 def with_common_options(command: click.Command) -> click.Command:
     """A command that was just imported, with the options that all have after its own ones."""
-    if command.name in WORK:
-        command.callback = with_progress(command.name, command.callback)
+    if command.name in WORK and command.callback is not None:
+        command.callback = with_progress(command.name, reading_once()(command.callback))
     if command.name in _WATCHING:
         command.params.append(click.Option(["--watch"], is_flag=True, help="Run again whenever an input file changes."))
         command.callback = repeat_on_change(command.callback)

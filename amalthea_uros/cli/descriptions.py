@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_stream
+from amalthea_uros._internal.files import STANDARD_OUTPUT, is_open_file, is_stream
 from amalthea_uros._internal.resources import known_platforms, resource_folder
 from amalthea_uros.cli.output import (
     Output,
@@ -130,7 +130,7 @@ def build(
     from amalthea_uros.services.build_targets import BuildTarget
     from amalthea_uros.validate.settings import project_settings
 
-    is_filter = target is None and description == STANDARD_INPUT
+    is_filter = target is None and is_open_file(description)
     outputs = beside_files(outputs, [("-o", STANDARD_OUTPUT if is_filter else target)])
     result = build_file(
         description, target, version, platform, compress, force, with_bus=with_bus, tool=BuildTarget(tool) if tool else None

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import click
 
-from amalthea_uros._internal.files import STANDARD_INPUT
+from amalthea_uros._internal.files import is_open_file, is_stream
 from amalthea_uros.cli.output import Output, beside_files, output_option, show_findings, show_result, show_text
 from amalthea_uros.cli.parameters import INPUT, OUTPUT
 from amalthea_uros.cli.patience import working
@@ -73,7 +73,7 @@ def fmt(paths: tuple[Path, ...], check: bool, show_diff: bool) -> None:
     from amalthea_uros.services.format import format_files
 
     result = format_files(paths, write=not (check or show_diff))
-    is_filter = STANDARD_INPUT in paths and result.is_written
+    is_filter = result.is_written and any(map(is_stream, paths))
     show_text(FilesDiff(result.changed, "canonical") if show_diff else result, on_error_stream=is_filter)
     show_findings(result.findings)
     sys.exit(2 if result.findings else 1 if result.changed and not result.is_written else 0)
@@ -127,8 +127,8 @@ def migrate(
 
     if in_place and target is not None:
         raise click.UsageError("--in-place and -o exclude each other.")
-    if STANDARD_INPUT in paths and target is None and not is_dry_run:
-        raise click.UsageError("-o names the file for standard input; add it, e.g. -o - for standard output.")
+    if target is None and not is_dry_run and any(map(is_open_file, paths)):
+        raise click.UsageError("-o names the file for standard input or a pipe; add it, e.g. -o - for standard output.")
     outputs = beside_files(outputs, [("-o", target)])
     result = migrate_files(
         paths,

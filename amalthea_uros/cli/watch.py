@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 
 import click
 
-from amalthea_uros._internal.files import STANDARD_INPUT, FileError, is_directory, list_directory, read_bytes
+from amalthea_uros._internal.files import FileError, is_directory, is_stream, list_directory, read_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.own_processes import own_command
 from amalthea_uros._internal.paths import is_description
@@ -67,12 +67,12 @@ def _inputs(context: click.Context) -> list[Path]:
 
     Raises
     ------
-    UsageError : one of them is standard input.
+    UsageError : one of them is standard input or a pipe.
     """
     read = (context.params[p.name] for p in context.command.params if p.type is INPUT and p.name in context.params)
     paths = [path for given in read for path in (given if isinstance(given, tuple) else (given,)) if path is not None]
-    if STANDARD_INPUT in paths:
-        raise click.UsageError(f"{_OPTION} waits for changes of files; standard input has none")
+    if any(map(is_stream, paths)):
+        raise click.UsageError(f"{_OPTION} waits for changes of files; standard input and pipes have none")
     platform = context.params.get("platform")
     return [*paths, *(path.parent / platform for path in paths if platform)]
 

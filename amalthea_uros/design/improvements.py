@@ -10,6 +10,7 @@ from itertools import islice
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact
+from amalthea_uros.analyze.phases.cases import MAX_JOBS, work_of
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import EXPLAINED, LIMITED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ChainExplanation
@@ -30,6 +31,8 @@ from amalthea_uros.units import Rounding, Time, percent_text, time_text
 MAX_ANALYSES, MIN_ANALYSES = 24, 4
 #: The processes of all changed systems together.
 MAX_PROCESSES = 2_000
+#: The work of the combinations of phases of all changed systems together: that of three systems with as many as are evaluated.
+MAX_WORK = 3 * MAX_JOBS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +87,8 @@ class Improvements(Shown):
     ----------
     found : the shortest latency first, then combinations of them, from two changes on
     tried : number of changed systems that were analysed
-    untried : number of changes that were not, because there are too many
+    untried : number of changes that were not, because there are too many, or because of their phases
+    is_work_exceeded : whether some were not because all combinations of phases of those before took as much work as is allowed
     """
 
     chain: str
@@ -92,6 +96,7 @@ class Improvements(Shown):
     found: tuple[Improvement, ...]
     tried: int
     untried: int
+    is_work_exceeded: bool = False
 
     def __repr__(self) -> str:
         best = f"{time_text(self.found[0].after)} by {self.found[0].change.text}" if self.found else "none found"
@@ -147,12 +152,15 @@ def improvements_of(
     tries = (trial.tried(each, changed, trial.before) for each, changed in islice(prepared, most))
     singles = [each for each in tries if each is not None]
     ranked = sorted(singles, key=rank)
+    combined = tuple(trial.combined(ranked))
+    untried = max(0, len(prepared) - most) if source is None or len(prepared) < MAX_ANALYSES else len(every) - most
     return Improvements(
         chain=trial.chain,
         quantity=trial.quantity,
-        found=(*ranked, *trial.combined(ranked)),
+        found=(*ranked, *combined),
         tried=trial.count,
-        untried=max(0, len(prepared) - most) if source is None or len(prepared) < MAX_ANALYSES else len(every) - most,
+        untried=untried + trial.refused,
+        is_work_exceeded=trial.refused > 0,
     )
 
 
@@ -177,6 +185,8 @@ class Trial:
     ----------
     count : of changed systems whose analysis is known
     known : what the analyses found; changes without an effect, or with that of another one, are analysed once
+    work : of the combinations of phases that were analysed
+    refused : number of changed systems that were not analysed because of the work of those before
     """
 
     analysis: Analysis
@@ -186,6 +196,8 @@ class Trial:
     source: DescriptionOrigin | None
     count: int = 0
     known: list[tuple[Configuration, Improvement | None]] = field(default_factory=list)
+    work: int = 0
+    refused: int = 0
 
     def __post_init__(self) -> None:
         self.known.append((self.present, None))
@@ -220,14 +232,23 @@ class Trial:
             if each == changed:
                 self.count += 1
                 return improvement and replace(improvement, change=candidate, differences=self._differences(candidate))
+        if self.work >= MAX_WORK:
+            self.refused += 1
+            return None
         try:
-            after = analyze_while(*changed, partial(_is_shorter, self.chain, self.quantity, limit))
+            after = analyze_while(*changed, partial(self._is_shorter, limit))
         except InvalidArgumentError:
             return None
         self.count += 1
         improvement = None if after is None else self._improvement(candidate, after)
         self.known.append((changed, improvement))
         return improvement
+
+    def _is_shorter(self, limit: Time | None, for_a_phase: Analysis) -> bool:
+        """Whether the maximum is shorter than a limit for a phase of a changed system; if not, it is not over all phases either."""
+        self.work += work_of(for_a_phase.solution)
+        now = _latency(for_a_phase, self.chain, self.quantity)
+        return now is not None and (limit is None or now < limit)
 
     def _improvement(self, candidate: ImprovingChange, after: Analysis) -> Improvement | None:
         return _improvement(candidate, self._differences(candidate), self.chain, self.quantity, self.analysis, after)
@@ -268,12 +289,6 @@ def _combination(one: ImprovingChange, other: ImprovingChange) -> ImprovingChang
         return None
     changes = (*one.changes, *other.changes)
     return ImprovingChange(text=f"{one.text}, {other.text}", changes=changes, is_stated=True, count=one.count + other.count)
-
-
-def _is_shorter(chain: str, quantity: LatencyQuantity, limit: Time | None, for_a_phase: Analysis) -> bool:
-    """Whether a maximum is shorter than a limit for a phase of a changed system; if not, it is not over all phases either."""
-    now = _latency(for_a_phase, chain, quantity)
-    return now is not None and (limit is None or now < limit)
 
 
 def check_explained(quantity: object) -> None:

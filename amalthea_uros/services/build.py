@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT, is_file
+from amalthea_uros._internal.files import STANDARD_OUTPUT, is_file, is_open_file
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass
@@ -157,7 +157,7 @@ def _beside(description: Path, force: bool) -> Path:
     """
     from amalthea_uros.xmi.emf.files import SUFFIX
 
-    if description == STANDARD_INPUT:
+    if is_open_file(description):
         return STANDARD_OUTPUT
     path = description.with_suffix(SUFFIX)
     if not force and is_file(path) and not _is_built(path):

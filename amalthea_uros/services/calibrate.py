@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.paths import TEXT, StrPath
 from amalthea_uros.compare.calibration.calibration import Calibration, calibrate_file, calibrate_text
 from amalthea_uros.compare.calibration.options import AgentFit, CalibrationOptions, Form, parse_fit
@@ -50,7 +51,7 @@ def calibrate(
         margin=parse_share(margin, "margin"),
         tighten=tighten,
         judge_on=parse_share(judge_on, "judge_on"),
-        fits=tuple(map(_fit, fits)),
+        fits=tuple(map(_fit, one_or_several(fits))),
     )
     traces = [trace] if isinstance(trace, str | Path | Measurement) or not isinstance(trace, Iterable) else list(trace)
     measurements = [each if isinstance(each, Measurement) else measure(each) for each in traces]

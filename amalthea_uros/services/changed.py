@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.files import read_text
+from amalthea_uros._internal.files import read_text, reading_once
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import TEXT
 from amalthea_uros._internal.records import dataclass, replace
@@ -78,6 +78,7 @@ class ChangedSystem:
                 require_settings(changed.settings, changed.system)
 
 
+@reading_once()
 def open_changed(
     subject: Subject, settings: Settings | None = None, changes: Changes = (), *, with_bus: bool = False
 ) -> ChangedSystem:

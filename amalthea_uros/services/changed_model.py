@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.paths import StrPath, is_description
+from amalthea_uros._internal.files import reading_once
+from amalthea_uros._internal.paths import StrPath, has_description_name
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.changed_model import changed_system, update_model
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from amalthea_uros.services.optimize import Optimization
 
 
+@reading_once()
 def write_changed(subject: Subject, changes: Sequence[Change], settings: Settings, path: StrPath) -> None:
     """Write the model of a changed system, or an edited description.
 
@@ -47,7 +49,7 @@ def write_changed(subject: Subject, changes: Sequence[Change], settings: Setting
     if opened is not None and opened.assembly is not None:
         _write_edited(opened, changes, settings, path)
         return
-    if is_description(path):
+    if has_description_name(path):
         raise InvalidArgumentError(
             f"{path}: a changed system is written as an AMALTHEA model, not as a description; give a file with the suffix .amxmi"
         )
@@ -81,7 +83,7 @@ def _write_edited(opened: SystemInput, changes: Sequence[Change], settings: Sett
     from amalthea_uros.xmi.save import save
 
     origin = description_origin(opened, settings)
-    if is_description(path):
+    if has_description_name(path):
         save_text(path, moved(origin.edited(changes), origin.path, Path(path)))
         return
     edited, assumed = origin.rebuilt(changes)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
+from amalthea_uros._internal.files import reading_once
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.paths import StrPath, by_model, without_other_yaml
 from amalthea_uros._internal.records import dataclass
@@ -92,6 +93,7 @@ def check(model: Model, rules: Iterable[str] | None = None) -> list[Finding]:
     return sorted((finding for finding in _run(model, chosen) if not is_suppressed(finding)), key=by_place)
 
 
+@reading_once()
 def check_files(
     paths: StrPath | Iterable[StrPath],
     settings: CheckSettings | None = None,

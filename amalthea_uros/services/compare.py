@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.compare.comparing import DEFAULT_TOLERANCE, EVERY_SOURCE, CompareOptions, compare_measured
 from amalthea_uros.compare.measured.events import begins_of
@@ -106,6 +107,6 @@ def compare_files(
 
 
 def _sources(names: Iterable[PredictionSource | str]) -> tuple[PredictionSource, ...]:
-    given = tuple(names)
+    given = one_or_several(names)
     require("source of predictions", given, EVERY_SOURCE)
     return tuple(map(PredictionSource, given))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from amalthea_uros._internal.files import read_text
+from amalthea_uros._internal.files import read_text, reading_once
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.records import dataclass
@@ -53,6 +53,7 @@ class DiffResult(Brief, Shown):
     impact: Impact | None = None
 
 
+@reading_once()
 def diff(old: Model | StrPath, new: Model | StrPath, *, with_impact: bool = False) -> DiffResult:
     """Compare two models, or the files, folders or descriptions that hold them.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
+from amalthea_uros._internal.files import reading_once
 from amalthea_uros._internal.paths import StrPath, by_model, is_description, without_other_yaml
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.metamodel.model import Model
@@ -55,6 +56,7 @@ class FixResult:
         return tuple(file for model in self.models for file in model.changed)
 
 
+@reading_once()
 def fix_files(
     paths: StrPath | Iterable[StrPath],
     settings: CheckSettings | None = None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from amalthea_uros._internal.files import STANDARD_INPUT, STANDARD_OUTPUT
+from amalthea_uros._internal.files import STANDARD_OUTPUT, is_stream
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -70,8 +70,9 @@ def _format(path: Path, write: bool) -> Iterable[FileChange]:
     # The canonical form is UTF-8 without a byte order mark, as EMF writes it.
     before = "\ufeff" + source.text if source.file.encoding == "utf-8-sig" else source.text
     after = document_text(document, canonical=True)
-    if write and (after != before or path == STANDARD_INPUT):
-        save(model, STANDARD_OUTPUT if path == STANDARD_INPUT else None, canonical=True)
+    is_filter = is_stream(path)
+    if write and (after != before or is_filter):
+        save(model, STANDARD_OUTPUT if is_filter else None, canonical=True)
     if after == before:
         return ()
     return (FileChange(path, before, after),)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from amalthea_uros._internal.files import reading_once
 from amalthea_uros._internal.paths import folder_of
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -34,6 +35,7 @@ class GeneratedController(NamedTuple):
     waiting: WaitingMessages | None
 
 
+@reading_once()
 def generated_controller(path: Path, platform: str | None, name: str | None) -> GeneratedController:
     """The controller of a description; of a robot, one of them, with the messages that the others send it.
 

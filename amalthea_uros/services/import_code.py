@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from os import PathLike
 from pathlib import Path
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
@@ -52,7 +52,7 @@ def import_code(
     from amalthea_uros.source.read import read_facts
     from amalthea_uros.spec.middleware import option_units
 
-    given = [Path(paths)] if isinstance(paths, str | PathLike) else [Path(path) for path in paths]
+    given = [Path(path) for path in one_or_several(paths)]
     file = None if target is None else Path(target)
     facts = read_facts(read_sources(given), board)
     name = given[0].resolve().stem if given else "app"

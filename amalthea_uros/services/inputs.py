@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.files import reading_once
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
@@ -41,12 +42,13 @@ def as_paths(paths: StrPath | Iterable[StrPath]) -> tuple[Path, ...]:
     ------
     InvalidArgumentError : there is none.
     """
-    found = (Path(paths),) if isinstance(paths, str | PathLike) else tuple(map(Path, paths))
+    found = tuple(map(Path, one_or_several(paths)))
     if not found:
         raise InvalidArgumentError("no path given; expected at least one file or folder")
     return found
 
 
+@reading_once()
 def open_model(paths: Sequence[StrPath]) -> ModelInput:
     """The AMALTHEA model of files.
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TypeVar
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.compare.measured.columns import parse_column, parse_unit, parse_valid_rows
 from amalthea_uros.compare.measured.events import begins_of
@@ -70,7 +71,7 @@ def measure(
     InvalidArgumentError : an option that cannot be right, or a package that is missing.
     """
     options = MeasureOptions(
-        columns=tuple(_given(parse_column, each) for each in columns),
+        columns=tuple(_given(parse_column, each) for each in one_or_several(columns)),
         unit=None if unit is None else _given(parse_unit, unit),
         valid_rows=None if valid_rows is None else _given(parse_valid_rows, valid_rows),
         markers=None if markers is None else Path(markers),
@@ -87,7 +88,7 @@ def measure(
             stated_time("the start of the window", window[0]),
             None if window[1] is None else stated_time("the end of the window", window[1]),
         ),
-        select=tuple(select),
+        select=one_or_several(select),
         begins=ModelBegins() if model is None else begins_of(open_system(model).system),
     )
     return measure_file(as_paths(trace)[0], options)

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from time import monotonic
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.results.analysis import Analysis
-from amalthea_uros.design.changes.change import Sweep, parse_sweep
+from amalthea_uros.design.changes.change import Sweeps, as_sweeps
 from amalthea_uros.design.optimize.choices import DEFAULT, Vary, Wishes
 from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.parallel_evaluation import evaluator_on
@@ -116,7 +117,7 @@ def optimize(
     limits: Iterable[str | Limit] = (),
     goals: Sequence[str] = (),
     vary: Iterable[str | Vary] = DEFAULT,
-    offers: Iterable[str | Sweep] = (),
+    offers: Sweeps = (),
     keep: Iterable[str] = (),
     settings: Settings | None = None,
     is_rate_monotonic: bool = False,
@@ -160,13 +161,19 @@ def optimize(
     InvalidArgumentError : something that is named does not exist, a value is wrong, or the cluster cannot be used.
     """
     wishes = Wishes(
-        vary=tuple(map(_vary, vary)),
-        offers=tuple(parse_sweep(each) if isinstance(each, str) else each for each in offers),
-        keep=tuple(keep),
+        vary=tuple(map(_vary, one_or_several(vary))),
+        offers=as_sweeps(offers),
+        keep=one_or_several(keep),
         is_rate_monotonic=is_rate_monotonic,
     )
     plan = plan_optimization(
-        subject, wishes, limits=limits, goals=goals, settings=settings, may_be_later=may_be_later, seed=seed
+        subject,
+        wishes,
+        limits=one_or_several(limits),
+        goals=one_or_several(goals),
+        settings=settings,
+        may_be_later=may_be_later,
+        seed=seed,
     )
     effort = Effort(designs=designs, is_complete=is_complete, ended=_clock(time_limit), progress=progress)
     with evaluator_on(plan.evaluator, workers, cluster) as evaluate:

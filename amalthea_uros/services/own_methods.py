@@ -116,6 +116,8 @@ def method_bounds(subject: Subject | Analysis, methods: Iterable[AnalysisMethod]
     """
     analysis = subject if isinstance(subject, Analysis) else analyze(subject)
     chosen = installed_methods() if methods is None else tuple(methods)
+    if not all(isinstance(method, AnalysisMethod) for method in chosen):
+        raise TypeError(f"methods must be a list of AnalysisMethod, not {methods!r}")
     return MethodBounds(analysis, tuple(row for method in chosen for row in _rows(method, analysis)))
 
 

@@ -7,13 +7,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros._internal.records import dataclass, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.design.campaign.run import RunOutcome, plan_runs
 from amalthea_uros.design.campaign.simulations import CampaignResult, SimulationJob, require_bounded_work
 from amalthea_uros.design.changes.apply import Difference
-from amalthea_uros.design.changes.change import Change, Sweep
+from amalthea_uros.design.changes.change import Change, Sweeps, as_sweeps
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.findings.accepted import unsuppressed
@@ -145,7 +146,7 @@ def simulate(
     traced = (0, duration) if sinks else None
     if mode not in tuple(SimulationMode):
         raise InvalidArgumentError(f"unknown mode {mode!r}; expected one of {', '.join(SimulationMode)}")
-    options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), traced=traced, labels=tuple(labels))
+    options = Options(duration=duration, seed=seed, mode=SimulationMode(mode), traced=traced, labels=labels)
     result = _simulated(changed, options, sinks)
     origin = RunOrigin(result.system, result.options)
     return replace(result.simulation, findings=result.findings, trace=recorder.table if trace else None, origin=origin)
@@ -156,7 +157,7 @@ def simulate_campaign(
     options: Options,
     *,
     changes: Sequence[Change] = (),
-    sweeps: Sequence[Sweep] = (),
+    sweeps: Sweeps = (),
     repetitions: int = 1,
     with_bus: bool = False,
     workers: int | None = None,
@@ -184,6 +185,7 @@ def simulate_campaign(
     from amalthea_uros.design.campaign.campaign import finished_runs
     from amalthea_uros.design.campaign.executors import executor_for
 
+    sweeps = as_sweeps(sweeps)
     runs = plan_runs(sweeps, repetitions, options.seed)
     changed = open_changed(paths, options.settings, changes, with_bus=with_bus)
     changed.check_sweeps(sweeps)
@@ -203,7 +205,7 @@ def simulate_campaign(
 def _writers(paths: Iterable[StrPath]) -> list[OpenSink]:
     from amalthea_uros.trace.sinks import open_sink
 
-    return [partial(open_sink, Path(path)) for path in paths]
+    return [partial(open_sink, Path(path)) for path in one_or_several(paths)]
 
 
 def _simulated(changed: ChangedSystem, options: Options, sinks: Sequence[OpenSink]) -> SimulationResult:

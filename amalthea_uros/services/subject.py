@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from amalthea_uros._internal.files import reading_once
 from amalthea_uros._internal.paths import TEXT, StrPath
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.diagnostics import Finding
@@ -57,6 +58,7 @@ class SystemInput:
         return () if self.assembly is None else self.assembly.task_periods
 
 
+@reading_once()
 def open_system(subject: Subject, *, with_bus: bool = False) -> SystemInput:
     """The system of files, of a description as text or dict, of an AMALTHEA model, or the given one, with the findings about it.
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from amalthea_uros.design.campaign.campaign import finished_runs
 from amalthea_uros.design.campaign.executors import executor_for
 from amalthea_uros.design.campaign.run import RunOutcome
-from amalthea_uros.design.campaign.sweeps import AnalysisJob, SweepPlan, SweepResult, Sweeps, as_sweeps, plan_sweep
-from amalthea_uros.design.changes.change import Changes
+from amalthea_uros.design.campaign.sweeps import AnalysisJob, SweepPlan, SweepResult, plan_sweep
+from amalthea_uros.design.changes.change import Changes, Sweeps, as_sweeps
 from amalthea_uros.findings.accepted import unsuppressed
 from amalthea_uros.services.changed import ChangedSystem, open_changed
 from amalthea_uros.services.subject import Subject

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.perf.system import System
@@ -64,7 +66,7 @@ class Options:
             mode: SimulationMode = SimulationMode.SAMPLED,
             settings: Settings = ...,
             traced: tuple[TimeLike, TimeLike] | None = None,
-            labels: tuple[str, ...] = (),
+            labels: Iterable[str] = (),
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -72,6 +74,7 @@ class Options:
         if self.traced is not None:
             ends = (kept_time(f"the {end} of the trace", time) for end, time in zip(("begin", "end"), self.traced, strict=True))
             object.__setattr__(self, "traced", tuple(ends))
+        object.__setattr__(self, "labels", one_or_several(self.labels))
         if self.duration <= 0:
             raise InvalidArgumentError("the duration of a simulation must be greater than zero")
         if self.seed < 0:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from amalthea_uros._internal.files import STANDARD_INPUT, FileError, is_file, read_text, resolved
+from amalthea_uros._internal.files import FileError, is_file, is_open_file, read_text, resolved
 from amalthea_uros._internal.limits import SETTINGS_SIZE
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros._internal.similar import similar
@@ -71,7 +71,7 @@ def project_settings(path: Path) -> CheckSettings:
     ------
     ReadError : the settings cannot be read, or something in them is wrong.
     """
-    start = resolved(Path() if path == STANDARD_INPUT else path)
+    start = resolved(Path() if is_open_file(path) else path)
     for folder in (start, *start.parents):
         for name, tables in _PLACES:
             file = folder / name

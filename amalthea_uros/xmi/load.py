@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from amalthea_uros._internal.files import FileError, is_directory, list_directory
 from amalthea_uros._internal.garbage import paused_garbage_collection
 from amalthea_uros._internal.limits import MODEL_SIZE
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.paths import StrPath
 from amalthea_uros.diagnostics import Finding
 from amalthea_uros.errors import ReadError
@@ -83,10 +83,7 @@ def _read(paths: Iterable[Path], max_size: int) -> tuple[list[ReadResult], dict[
 
 def _flat(paths: Iterable[StrPath | Iterable[StrPath]]) -> Iterator[StrPath]:
     for path in paths:
-        if isinstance(path, str | os.PathLike):
-            yield path
-        else:
-            yield from path
+        yield from one_or_several(path)
 
 
 def model_files(paths: Iterable[StrPath]) -> list[Path]:

@@ -1,8 +1,10 @@
 """`-` is standard input and standard output in every command."""
 
 import json
+import os
 import subprocess
 import sys
+from threading import Thread
 
 import pytest
 from command import amuros
@@ -32,10 +34,21 @@ def test_a_model_is_read_from_standard_input(arguments, expected):
     assert "Traceback" not in run.stderr
 
 
+@pytest.mark.parametrize("path", ["-", "/dev/fd/0"])
 @pytest.mark.parametrize("command", [["check"], ["analyze"], ["simulate", "--duration", "2ms"], ["build"]])
-def test_a_description_is_recognised_by_its_content(command):
-    run = amuros(*command, "-", given=DESCRIPTION.read_text())
+def test_a_description_is_recognised_by_its_content(command, path):
+    run = amuros(*command, path, given=DESCRIPTION.read_text())
     assert (run.returncode, "Traceback" in run.stderr) == (0, False)
+
+
+def test_a_description_is_a_named_pipe(tmp_path):
+    path = tmp_path / "app.yaml"
+    os.mkfifo(path)
+    writer = Thread(target=path.write_text, args=[DESCRIPTION.read_text()], daemon=True)
+    writer.start()
+    run = amuros("analyze", path)
+    assert "Schedulable: yes" in run.stdout
+    writer.join()
 
 
 def test_a_place_in_standard_input():
@@ -53,8 +66,9 @@ def test_a_model_is_written_to_standard_output_and_the_text_goes_to_standard_err
 
 
 def test_build_as_a_filter():
-    run = amuros("build", "-", given=DESCRIPTION.read_text())
-    assert run.stdout == BUILT.read_text()
+    for path in ("-", "/dev/fd/0"):
+        run = amuros("build", path, given=DESCRIPTION.read_text())
+        assert run.stdout == BUILT.read_text()
 
 
 def test_fmt_as_a_filter():
@@ -62,6 +76,7 @@ def test_fmt_as_a_filter():
     assert (once.returncode, once.stderr) == (0, "/dev/stdin: rewritten\n")
     again = amuros("fmt", "-", given=once.stdout)
     assert (again.stdout, again.stderr) == (once.stdout, "")
+    assert amuros("fmt", "/dev/fd/0", given=once.stdout).stdout == once.stdout
     assert amuros("fmt", "--check", "-", given=CHECKED).returncode == 1
     assert amuros("fmt", "--diff", "-", given=once.stdout).stdout == ""
 
@@ -107,9 +122,10 @@ def test_two_results_in_one_stream_are_refused(arguments):
     assert "both write to standard output; give all but one of them a file" in run.stderr
 
 
-@pytest.mark.parametrize("arguments", [["check", "--fix", "-"], ["migrate", "-"]])
-def test_standard_input_is_not_changed_in_place(arguments):
-    run = amuros(*arguments, given=CHECKED)
+@pytest.mark.parametrize("path", ["-", "/dev/fd/0"])
+@pytest.mark.parametrize("arguments", [["check", "--fix"], ["migrate"], ["check", "--watch"]])
+def test_standard_input_is_not_changed_in_place(arguments, path):
+    run = amuros(*arguments, path, given=CHECKED)
     assert (run.returncode, run.stdout) == (2, "")
     assert "standard input" in run.stderr
 

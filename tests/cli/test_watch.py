@@ -102,4 +102,4 @@ def test_what_is_watched(folder):
 def test_standard_input_cannot_be_watched():
     run = amuros("check", "-", "--watch")
     assert run.returncode == 2
-    assert "--watch waits for changes of files; standard input has none" in run.stderr
+    assert "--watch waits for changes of files; standard input and pipes have none" in run.stderr

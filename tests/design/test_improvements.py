@@ -14,6 +14,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design import improvements as improvements_module
 from amalthea_uros.perf.activities import Communication
 from amalthea_uros.perf.constraints import Bound, Requirement, TimeLimit, TimeMetric
+from amalthea_uros.report.documents.explanation import tried
 from amalthea_uros.services.analyze import analyze, analyze_files
 from amalthea_uros.services.explain import explain, improvements
 from amalthea_uros.services.subject import open_system
@@ -168,6 +169,29 @@ def test_the_phases_of_a_change_that_shortens_nothing_are_not_all_analysed(monke
     whole = analyze_module.analyze_while(system, None, lambda _analysis: True)
     assert len(analyses) == 1 + 20
     assert whole.chains == analyze_module.analyze_system(system).chains
+
+
+@pytest.mark.parametrize("limit", [1, 5_000, 20_000])
+def test_the_work_of_all_phases_of_all_changes_is_bounded(limit, monkeypatch, advanced):
+    """What is counted is each combination of phases that is analysed; the analysis that reaches the limit is completed."""
+    monkeypatch.setattr(improvements_module, "MAX_WORK", limit)
+    work, of_phase = [], analyze_module._analysis
+
+    def counted(solution, *others):
+        work[-1] += sum(response.jobs + 100 for response in solution.responses.values())
+        return of_phase(solution, *others)
+
+    def started(*given):
+        assert sum(work) < limit
+        work.append(0)
+        return analyze_module.analyze_while(*given)
+
+    monkeypatch.setattr(analyze_module, "_analysis", counted)
+    monkeypatch.setattr(improvements_module, "analyze_while", started)
+    found = improvements(advanced, CHAIN)
+    assert limit <= sum(work) < limit + max(work)
+    assert found.untried > 0
+    assert "more were not tried, because all combinations of phases" in tried(found)
 
 
 def test_only_changes_that_are_found_are_analysed_for_all_phases(monkeypatch, advanced):

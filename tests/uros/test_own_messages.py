@@ -34,7 +34,7 @@ def distances(result):
 def test_the_times_of_the_publisher_count_instead_of_what_is_stated():
     analysis = amuros.analyze(STATED)
     (finding,) = (each for each in analysis.findings if each.rule == "HST003")
-    assert "the controller itself sends the messages of 'Take' every 100 ms with a jitter of up to" in finding.message
+    assert "the controller itself can send the messages of 'Take' every 100 ms with a jitter of up to" in finding.message
     observed = distances(amuros.simulate(STATED, "10 s"))
     assert distances(analysis).min <= observed.min < 95 * MILLISECOND
 
@@ -44,7 +44,7 @@ def test_a_task_of_a_callback_is_analysed_only_for_what_is_stated():
     text = STATED.replace("loop: {spin: 1 s}", "period: 30 ms")
     analysis = amuros.analyze(text)
     assert analysis.processes["Take"].response is None
-    assert "the controller itself sends 't' every 100 ms with a jitter of up to" in str(
+    assert "the controller itself can send 't' every 100 ms with a jitter of up to" in str(
         [each.message for each in analysis.findings]
     )
     covered = text.replace("interval: 100 ms", "interval: 100 ms, jitter: 60 ms")
@@ -70,7 +70,11 @@ def test_messages_may_be_rarer_than_stated():
     ("also", "interval", "reason"),
     [
         ("t", "100 ms", "more than one publisher sends 't'"),
-        ("", "110 ms", "the controller itself sends the messages of 'Take' every 100 ms, but the subscription states 110 ms"),
+        (
+            "",
+            "110 ms",
+            "the controller itself can send the messages of 'Take' every 100 ms, but the subscription states 110 ms",
+        ),
     ],
 )
 def test_messages_that_come_otherwise_than_stated_are_unknown(also, interval, reason):

@@ -129,6 +129,7 @@ def _projects() -> Sequence[Files]:
 
 
 def _can_logs() -> Sequence[Files]:
+    """Those of the extra `can`; .mf4 needs asammdf, which no extra installs, so that its reader would only refuse each file."""
     import can
 
     found = [{"run.log": _LOG}, {"run.log.gz": gzip.compress(_LOG, mtime=0)}]

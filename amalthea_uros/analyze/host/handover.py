@@ -99,9 +99,9 @@ def _without_known_times(
             if difference := violated(transmission, releases):
                 yield transmission, _Unknown(difference, is_contradiction=True)
             elif handle := intervals.get(transmission.name):
-                yield transmission, _Unknown(f"{sender} does not send {topic!r} in the interval that {handle.name!r} states")
+                yield transmission, _Unknown(f"{sender} can send {topic!r} in another interval than {handle.name!r} states")
         except UnknownError as error:
-            yield transmission, _Unknown(f"it is not known how often {sender} sends {topic!r}: {error}")
+            yield transmission, _Unknown(f"it is not known how often {sender} can send {topic!r}: {error}")
 
 
 def _changes(stated: System, solution: Solution) -> list[tuple[Handle, Handle]]:
@@ -134,7 +134,7 @@ def _interval(real: PeriodicEvents, transmission: Transmission, releases: HostRe
 
 
 def _change(stated: Handle, analysed: Handle, sender: str) -> str:
-    message = f"{sender} sends the messages of {stated.name!r} every {time_text(analysed.interval or 0)}"
+    message = f"{sender} can send the messages of {stated.name!r} every {time_text(analysed.interval or 0)}"
     if stated.interval == analysed.interval:
         return f"{message} with a jitter of up to {time_text(analysed.jitter)}, which is used instead of what the subscription states"
     return f"{message}, but the subscription states {time_text(stated.interval or 0)}, so that what depends on them is unknown"
@@ -167,11 +167,11 @@ def violated(transmission: Transmission, releases: HostReleases) -> str:
         return f"more than one publisher sends {topic!r}, so that the interval of {transmission.callback!r} is not that of the messages"
     real = periodic_bound(published)
     if real is None or not isinstance(stated, PeriodicEvents):
-        return f"no interval and jitter describe how often {_sender(transmission, releases)} sends {topic!r}"
+        return f"no interval and jitter describe how often {_sender(transmission, releases)} can send {topic!r}"
     interval = _interval(real, transmission, releases)
     if interval != stated.period or real.jitter + agent > stated.jitter or stated.min_interarrival:
         times = f"every {time_text(real.period)} with a jitter of up to {time_text(real.jitter)}"
-        return f"{_sender(transmission, releases)} sends {topic!r} {times}, for which the controller is not analysed"
+        return f"{_sender(transmission, releases)} can send {topic!r} {times}, for which the controller is not analysed"
     return ""
 
 

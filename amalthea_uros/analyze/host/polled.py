@@ -71,17 +71,24 @@ class _BusyWindow:
         if length is None or task.events.eta_plus(length) > max_jobs(task):
             reason = "its busy window is too long: the callbacks need nearly all of the core"
             return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
-        ends = [(self._end(task, after), after) for after in releases(task, length)]
-        if any(end is None for end, _ in ends):
-            reason = "its busy window does not end"
-            return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
-        worst = max((end or 0) - after for end, after in ends)
-        return Response(worst=worst, best=best, method=METHOD, source=SOURCE, claim=Claim.BOUND, jobs=len(ends), window=length)
+        end, worst, jobs = 0, 0, task.events.eta_plus(length)
+        for after in releases(task, length):
+            reached = self._end(task, after, end)
+            if reached is None:
+                reason = "its busy window does not end"
+                return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
+            end, worst = reached, max(worst, reached - after)
+        return Response(worst=worst, best=best, method=METHOD, source=SOURCE, claim=Claim.BOUND, jobs=jobs, window=length)
 
-    def _end(self, task: AnalysedTask, after: Time) -> Time | None:
-        """The latest end of the last job that is released up to `after`, from the start of the busy window."""
+    def _end(self, task: AnalysedTask, after: Time, before: Time) -> Time | None:
+        """The latest end of the last job that is released up to `after`, from the start of the busy window.
+
+        Parameters
+        ----------
+        before : the end of an earlier job, which is not later, as the demand up to each moment is not greater
+        """
         own, last = task.demand.max_demand(task.events.eta_plus(after + 1)), task.demand.worst
-        end = after + 1
+        end = max(after + 1, before)
         for _ in range(MAX_STEPS):
             reached = self.supply.time_for(own + self._of_others(task, end - last + 1) + self.higher.in_window(end))
             if reached <= end:

@@ -45,6 +45,11 @@ MAX_JOBS = 320_000
 _JOBS_PER_PROCESS = 100
 
 
+def work_of(solution: Solution) -> int:
+    """The work of a combination of phases, in jobs."""
+    return sum(response.jobs + _JOBS_PER_PROCESS for response in solution.responses.values())
+
+
 @dataclass(frozen=True)
 class PhaseCases:
     """The combinations of the phases of what comes from outside, each of which makes a solution of its own, and their cases.
@@ -68,7 +73,7 @@ class PhaseCases:
             return None
         combinations = list(phase_combinations(unknown))
         first = _solution(solution.context, combinations[0])
-        if count * sum(response.jobs + _JOBS_PER_PROCESS for response in first.responses.values()) > MAX_JOBS:
+        if count * work_of(first) > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from amalthea_uros._internal.files import FileError, read_bytes, read_text, write_bytes
+from amalthea_uros._internal.files import FileError, read_bytes, read_text, reading_once, write_bytes
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.records import dataclass, replace
@@ -79,6 +79,7 @@ class Calibration(Shown):
             raise WriteError([finding]) from None
 
 
+@reading_once()
 def calibrate_file(path: Path, measurements: Sequence[Measurement], options: CalibrationOptions) -> Calibration:
     """Put measured values into the description of a file; raises as `calibrate_text`."""
     if not is_description(path):

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TypeAlias
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.impact import ComparedFigure, FigureUnit, figures
@@ -12,21 +10,10 @@ from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.campaign.run import CampaignRun, Record, RunOutcome, Value, VariantJob, VariantResults
-from amalthea_uros.design.changes.change import (
-    SWEEP_FORM,
-    Sweep,
-    combinations,
-    parse_sweep,
-    sampled,
-    split_target,
-    variants,
-)
+from amalthea_uros.design.changes.change import SWEEP_FORM, Sweep, combinations, sampled, variants
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.judge.summary import Schedulable
 from amalthea_uros.names import require
-
-#: Sweeps as callers give them: `{"Task.period": ["1 ms", "2 ms"]}` or `["Task.period=1ms..5ms/1ms"]`.
-Sweeps: TypeAlias = Mapping[str, Sequence[object]] | Iterable[str | Sweep]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,27 +48,6 @@ def plan_sweep(sweeps: tuple[Sweep, ...], sample: int | None = None, seed: int =
     found = variants(sweeps) if sample is None else sampled(sweeps, sample, seed)
     runs = tuple(CampaignRun(number, seed, changes) for number, changes in enumerate(found, start=1))
     return SweepPlan(sweeps=sweeps, runs=runs, total=combinations(sweeps), seed=None if sample is None else seed)
-
-
-def as_sweeps(sweeps: Sweeps) -> tuple[Sweep, ...]:
-    """Sweeps in any of the forms that callers give.
-
-    Raises
-    ------
-    InvalidArgumentError : a text is not of the form of a sweep, or a list of values is empty.
-    """
-    if isinstance(sweeps, Mapping):
-        return tuple(_listed(target, values) for target, values in sweeps.items())
-    texts: Sequence[str | Sweep] = [sweeps] if isinstance(sweeps, str) else list(sweeps)
-    return tuple(each if isinstance(each, Sweep) else parse_sweep(each) for each in texts)
-
-
-def _listed(target: str, values: Sequence[object]) -> Sweep:
-    if isinstance(values, str):
-        return parse_sweep(f"{target}={values}")
-    if not values:
-        raise InvalidArgumentError(f"{target!r} has no values to try")
-    return Sweep(*split_target(target, target, SWEEP_FORM, "Executor_Task.period", needs_object=False), tuple(map(str, values)))
 
 
 SCHEDULABLE, GROWTH = "schedulable", "maximum_growth"

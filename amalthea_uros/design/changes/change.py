@@ -9,6 +9,7 @@ from itertools import product
 from math import prod
 from typing import NamedTuple, TypeAlias
 
+from amalthea_uros._internal.one_or_several import one_or_several
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.units import FREQUENCY, TIME, parse
@@ -67,8 +68,7 @@ def as_changes(changes: Changes) -> tuple[Change, ...]:
         )
     if not isinstance(changes, Iterable):
         raise TypeError(f'expected changes such as {{"Task.period": "2 ms"}}, not {changes!r}')
-    texts: Sequence[str | Change] = [changes] if isinstance(changes, str) else list(changes)
-    return tuple(change if isinstance(change, Change) else parse_change(change) for change in texts)
+    return tuple(change if isinstance(change, Change) else parse_change(change) for change in one_or_several(changes))
 
 
 def parse_change(text: str) -> Change:
@@ -119,6 +119,9 @@ class Sweep:
     key: str
     values: Sequence[str]
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", one_or_several(self.values))
+
     def changes(self) -> Iterator[Change]:
         """A change for each value."""
         return (Change(self.object, self.key, value) for value in self.values)
@@ -136,6 +139,30 @@ class _Amount(NamedTuple):
     kind: str
     unit: str
     size: int
+
+
+#: Sweeps as callers give them: `{"Task.period": ["1 ms", "2 ms"]}` or `["Task.period=1ms..5ms/1ms"]`.
+Sweeps: TypeAlias = Mapping[str, Sequence[object]] | Iterable[str | Sweep]
+
+
+def as_sweeps(sweeps: Sweeps) -> tuple[Sweep, ...]:
+    """Sweeps in any of the forms that callers give.
+
+    Raises
+    ------
+    InvalidArgumentError : a text is not of the form of a sweep, or a list of values is empty.
+    """
+    if isinstance(sweeps, Mapping):
+        return tuple(_listed(target, values) for target, values in sweeps.items())
+    return tuple(each if isinstance(each, Sweep) else parse_sweep(each) for each in one_or_several(sweeps))
+
+
+def _listed(target: str, values: Sequence[object]) -> Sweep:
+    if isinstance(values, str):
+        return parse_sweep(f"{target}={values}")
+    if not values:
+        raise InvalidArgumentError(f"{target!r} has no values to try")
+    return Sweep(*split_target(target, target, SWEEP_FORM, "Executor_Task.period", needs_object=False), tuple(map(str, values)))
 
 
 def parse_sweep(text: str) -> Sweep:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import IO, Any
 
 #: Control and format characters, surrogates, and what XML 1.0 does not allow (section 2.2).
 _HIDDEN = re.compile(
@@ -58,18 +57,11 @@ def output_line(text: str) -> str:
     return _COMMAND.sub(_harmless, shown) if "::" in shown or "##" in shown else shown
 
 
-def write_json(content: Any, stream: IO[str]) -> None:
-    """Write a value as JSON that can be shown, too: hidden characters, and those that the stream lacks, are escapes of JSON."""
-    import json
-
-    shown = json.dumps(content, indent=2, ensure_ascii=False)
-    lines = (_HIDDEN.sub(_json_escape, line) for line in shown.split("\n"))
-    text = "\n".join(lines) + "\n"
-    try:
-        text.encode(getattr(stream, "encoding", None) or "utf-8")
-    except UnicodeEncodeError:
-        text = json.dumps(content, indent=2) + "\n"
-    stream.write(text)
+def visible_json(text: str) -> str:
+    """JSON of several lines without hidden characters: they are escapes of JSON."""
+    if text.isascii() and "\x7f" not in text:  # the other ones of ASCII are escapes already
+        return text
+    return "\n".join(_HIDDEN.sub(_json_escape, line) for line in text.split("\n"))
 
 
 def _escape(match: re.Match[str]) -> str:

@@ -22,6 +22,14 @@ ABSENT = object()
 #: The end of the names of times, which are whole picoseconds.
 TIME_SUFFIX = "_ps"
 
+
+class JsonFields(dict[str, Any]):
+    """Fields whose values are JSON already, so that nothing is left to be done where they are a part of other ones."""
+
+
+#: Most values are of these types, and are in JSON what they are.
+_PLAIN = frozenset({type(None), str, int, bool, JsonFields})
+
 _FIELDS: dict[type, tuple[Field, ...]] = {}
 
 
@@ -51,8 +59,13 @@ def json_of(value: Any, name: str = "") -> Any:
     ------
     TypeError : nobody declared the class of an object.
     """
+    kind = type(value)
+    if kind in _PLAIN:
+        return value
+    if kind in _FIELDS:
+        return record(value, _FIELDS[kind])
     match value:
-        case None | str() | int():
+        case str() | int():
             return value
         case Fraction() | float():
             return round(value) if name.endswith(TIME_SUFFIX) else float(value)
@@ -60,29 +73,27 @@ def json_of(value: Any, name: str = "") -> Any:
             return str(value)
         case Mapping():
             return {key: json_of(each, name) for key, each in value.items()}
-        case _ if type(value) in _FIELDS:
-            return record(value, _FIELDS[type(value)])
         case Iterable():
-            return [json_of(each, name) for each in value]
+            return [each if type(each) in _PLAIN else json_of(each, name) for each in value]
     raise TypeError(f"{type(value).__name__} has no fields")
 
 
-def record(value: Any, fields: Iterable[Field]) -> dict[str, Any]:
+def record(value: Any, fields: Iterable[Field]) -> JsonFields:
     """Some fields of an object, whether its class is declared or not."""
-    found: dict[str, Any] = {}
+    found = JsonFields()
     for field in fields:
         name, source = (field, field.removesuffix(TIME_SUFFIX)) if isinstance(field, str) else field
         part = value_at(value, source)
         if name == ALSO:
             found |= fields_of(part)
         elif part is not ABSENT:
-            found[name] = json_of(part, name)
+            found[name] = part if type(part) in _PLAIN else json_of(part, name)
     return found
 
 
-def fields_of(values: Mapping[str, Any]) -> dict[str, Any]:
+def fields_of(values: Mapping[str, Any]) -> JsonFields:
     """Fields that are computed with their names; unlike the keys of other mappings, which may be names of objects, these have units."""
-    return {name: json_of(value, name) for name, value in values.items()}
+    return JsonFields((name, value if type(value) in _PLAIN else json_of(value, name)) for name, value in values.items())
 
 
 def value_at(value: Any, source: Source) -> Any:
@@ -92,7 +103,9 @@ def value_at(value: Any, source: Source) -> Any:
     for step in source.split("."):
         if value is None:
             return None
-        value = value.get(step) if isinstance(value, Mapping) else getattr(value, step)
+        # To ask whether an object is a mapping takes as long as everything else here.
+        is_mapping = type(value) not in _FIELDS and isinstance(value, Mapping)
+        value = value.get(step) if is_mapping else getattr(value, step)
     return value
 
 

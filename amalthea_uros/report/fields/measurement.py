@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from functools import cache
 from typing import Any
 
 from amalthea_uros.compare.calibration.calibration import Calibration
@@ -23,7 +25,7 @@ from amalthea_uros.units import Time
 
 #: Declare differences and histograms.
 _USED = (changes, simulation)
-_PERCENTILES = ("p50", "p90", "p95", "p99", "p99_9")
+_PERCENTILES = ("p50_ps", "p90_ps", "p95_ps", "p99_ps", "p99_9_ps")
 
 
 def _series(measurement: Measurement) -> list[dict[str, Any]]:
@@ -33,7 +35,8 @@ def _series(measurement: Measurement) -> list[dict[str, Any]]:
 def _with_histogram(series: Series, resolution: Time | None) -> dict[str, Any]:
     """The fields of a series; no bin of its histogram is narrower than the step of the clock."""
     found: dict[str, Any] = json_of(series)
-    return found | {"histogram": json_of(measured.histogram_of(series, resolution))}
+    found["histogram"] = json_of(measured.histogram_of(series, resolution))
+    return found
 
 
 def _only(measurement: Measurement) -> dict[str, Any]:
@@ -60,9 +63,13 @@ def _jitter(series: Series) -> dict[str, Any] | None:
 
 def _percentiles(found: TimeStatistics) -> dict[str, Any]:
     """The percentiles by their names; those of too few values are null."""
-    names = {share: f"p{float(100 * share):g}".replace(".", "_") for share in found.percentiles}
-    values = dict.fromkeys(_PERCENTILES) | {names[share]: value for share, value in found.percentiles.items()}
-    return {f"{name}_ps": value for name, value in values.items()}
+    return dict.fromkeys(_PERCENTILES) | {_name(share): value for share, value in found.percentiles.items()}
+
+
+@cache
+def _name(share: Fraction) -> str:
+    """The name of a percentile."""
+    return f"p{float(100 * share):g}_ps".replace(".", "_")
 
 
 declare(

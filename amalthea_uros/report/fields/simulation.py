@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 from amalthea_uros.design.campaign.simulations import CampaignResult
@@ -29,6 +31,15 @@ from amalthea_uros.simulate.observations import (
 from amalthea_uros.simulate.results import Simulation
 
 _LEFT_OUT = ("name", "kind", "deadline_ps", "deadline_is_period", "verdict", "reason")
+
+
+def _edges(histogram: TimeHistogram) -> Sequence[Fraction | int]:
+    """The edges of the bins, as whole numbers where they are."""
+    start, width = histogram.start, histogram.width
+    if start.denominator == width.denominator == 1:
+        edges = len(histogram.counts) + 1
+        return range(int(start), int(start + edges * width), int(width))
+    return histogram.edges
 
 
 def _left_out(result: SimulationResult) -> list[dict[str, Any]]:
@@ -119,7 +130,7 @@ declare(
     ("histogram", given("histogram")),
 )
 declare(ObservedOccurrence, "instance", "time_ps")
-declare(TimeHistogram, "edges_ps", "counts")
+declare(TimeHistogram, ("edges_ps", _edges), "counts")
 declare(
     RequirementObservation,
     *("name", "object", "quantity"),

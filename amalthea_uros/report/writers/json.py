@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import IO, Any
 
 from amalthea_uros._version import __version__
-from amalthea_uros.report.basics.escape import write_json
+from amalthea_uros.report.basics.json_text import write_json
 from amalthea_uros.report.fields import FIELDS
 from amalthea_uros.report.fields.declaration import json_of
 

@@ -13,7 +13,7 @@ from amalthea_uros._internal.addresses import DOCUMENTATION
 from amalthea_uros._internal.files import resolved
 from amalthea_uros._version import __version__
 from amalthea_uros.diagnostics import Severity
-from amalthea_uros.report.basics.escape import write_json
+from amalthea_uros.report.basics.json_text import write_json
 from amalthea_uros.report.wording.findings import profile_name, relative
 
 if TYPE_CHECKING:

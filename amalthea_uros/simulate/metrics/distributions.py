@@ -76,7 +76,8 @@ class BinCounts:
             return
         before = replace(self)
         self.step, self.first, self.counts = step, first, np.zeros(size, np.int64)
-        self._put(before)
+        if len(before.counts):
+            self._put(before)
 
     def _put(self, other: BinCounts) -> None:
         """Add counts of bins that are not wider than these, and are covered by them."""
