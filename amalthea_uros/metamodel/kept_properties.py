@@ -8,6 +8,8 @@ def prefix(version: str) -> str:
     return f"AMALTHEA {version}: "
 
 
+#: Of semaphores: whether only the holder may release it.
+OWNERSHIP = prefix("3.0.0") + "ownership"
 #: Of schedulers and allocations: the name of a scheduling parameter follows.
 SCHEDULING_PARAMETER = prefix("2.0.0") + "schedulingParameters/"
 #: Of schedulers: the same of a parameter that the association with the parent has.

@@ -14,6 +14,8 @@ from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.cli.descriptions import VERSIONS
 from amalthea_uros.errors import WriteError
+from amalthea_uros.perf.os import Os, Semaphore, SemaphoreKind
+from amalthea_uros.perf.system import System
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
 from amalthea_uros.xmi.schema import validate
@@ -116,3 +118,12 @@ def test_default_values_of_parameters_count(tmp_path):
     path.write_text(MODEL.format(excerpt))
     allocations = extract(load(path)).system.mapping.tasks
     assert {allocation.task: allocation.priority for allocation in allocations} == {"T": 7, "U": 1}
+
+
+@pytest.mark.parametrize("version", ["2.2.0", "3.3.0"])
+@pytest.mark.parametrize("kind", [SemaphoreKind.COUNTING, SemaphoreKind.RESOURCE, SemaphoreKind.SPINLOCK])
+@pytest.mark.parametrize("ownership", [True, False])
+def test_who_may_release_a_semaphore_comes_back(file, version, kind, ownership):
+    """Before 3.0.0 only the type of a semaphore says it."""
+    system = System(os=Os(semaphores=(Semaphore(name="L", kind=kind, ownership=ownership),)))
+    assert there_and_back(system, file, version).os.semaphores == system.os.semaphores

@@ -100,6 +100,20 @@ def test_the_deadline_of_a_scheduler_below_another_is_kept_in_an_older_version(t
     assert deadlines == [7 * MILLISECOND] * 2
 
 
+@pytest.mark.parametrize("kind", ["CountingSemaphore", "Resource"])
+@pytest.mark.parametrize("kept", ["", "true", "false"])
+def test_who_may_release_a_semaphore_is_the_same_before_and_after_a_migration(kind, kept, tmp_path):
+    value = f'<value t="BooleanObject" value="{kept}"/>'
+    stated = f'<customProperties key="AMALTHEA 3.0.0: ownership">{value}</customProperties>' if kept else ""
+    older = tmp_path / "older.amxmi"
+    content = f'<osModel><semaphores name="S" semaphoreType="{kind}" maxValue="1">{stated}</semaphores></osModel>'
+    older.write_text(model("2.2.0", content))
+    newest = tmp_path / "newest.amxmi"
+    migrate_files([older], target=newest)
+    expected = kept == "true" if kept else kind != "CountingSemaphore"
+    assert [answer([path])[0].os.semaphores[0].ownership for path in (older, newest)] == [expected] * 2
+
+
 PLATFORM = """
 <hwModel>
   <definitions t="ProcessingUnitDefinition" name="D" puType="CPU"/>

@@ -5,19 +5,49 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from amalthea_uros.bridge.basics.codecs import PLAIN, enumeration, reference, same_names
+from amalthea_uros._internal.records import replace
+from amalthea_uros.bridge.basics.codecs import PLAIN, enumeration, marked, reference, same_names
 from amalthea_uros.bridge.basics.context import Building, Extracting
 from amalthea_uros.bridge.basics.entries import ClassEntry, ClassTable
 from amalthea_uros.bridge.basics.kinds import ObjectKind
 from amalthea_uros.bridge.tables.activities import ACTIVITIES, DEMAND, ITEMS, PROTECTIONS
 from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions, extract_parameters, extract_policy
 from amalthea_uros.metamodel import classes as am
+from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.kept_properties import OWNERSHIP
+from amalthea_uros.metamodel.versions import version_key
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.activities import Protection
 from amalthea_uros.units import Duration
 
+
+class _SemaphoreEntry(ClassEntry):
+    """Semaphores; before AMALTHEA 3.0.0 the type says that nobody owns a counting one, and a property says anything else."""
+
+    def fill(self, element: Element, item: perf.Semaphore, context: Building) -> Element:
+        if context.is_at_least(3, 0, 0):
+            return super().fill(element, item, context)
+        semaphore = super().fill(element, replace(item, ownership=True), context)
+        if item.ownership is not _is_owned(item.kind):
+            kept = am.CustomProperty(key=OWNERSHIP, value=am.BooleanObject(value=item.ownership))
+            semaphore.custom_properties.append(kept)  # type: ignore[attr-defined]
+        return semaphore
+
+    def values(self, element: Element, context: Extracting, *, strictly: bool = False) -> dict[str, Any] | None:
+        values = super().values(element, context, strictly=strictly)
+        document = element.document
+        if values is not None and document is not None and version_key(document.facts_version) < (3, 0, 0):
+            properties = element.custom_properties  # type: ignore[attr-defined]
+            values["ownership"] = marked(OWNERSHIP, _is_owned(values["kind"])).extract(properties, context, element)
+        return values
+
+
+def _is_owned(kind: perf.SemaphoreKind | None) -> bool:
+    return kind is not perf.SemaphoreKind.COUNTING
+
+
 SEMAPHORES = ClassTable(
-    ClassEntry(
+    _SemaphoreEntry(
         perf.Semaphore,
         am.Semaphore,
         kind=("semaphore_type", same_names(perf.SemaphoreKind, am.SemaphoreType, COUNTING="COUNTING_SEMAPHORE")),

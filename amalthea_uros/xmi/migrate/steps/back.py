@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from amalthea_uros.metamodel.kept_properties import OWNERSHIP
 from amalthea_uros.xmi.migrate.steps.back_scheduling import change_scheduling
-from amalthea_uros.xmi.migrate.steps.kept import OWNERSHIP, TAGS, keep, references, refuse_stale
+from amalthea_uros.xmi.migrate.steps.kept import TAGS, keep, references, refuse_stale
 from amalthea_uros.xmi.tree.model_set import ModelSet, Step
 from amalthea_uros.xmi.tree.node import Node, remove_all
 from amalthea_uros.xmi.tree.notes import StepNotes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from amalthea_uros.metamodel.kept_properties import PARENT_PARAMETER, SCHEDULING_PARAMETER, prefix
+from amalthea_uros.metamodel.kept_properties import OWNERSHIP, PARENT_PARAMETER, SCHEDULING_PARAMETER, prefix
 from amalthea_uros.xmi.migrate.steps.scheduling import QUANTUM, TASK_GROUP, USER_SPECIFIC
 from amalthea_uros.xmi.migrate.steps.tools import property_of, put_property, text_value
 from amalthea_uros.xmi.tree.model_set import ModelSet
@@ -151,8 +151,6 @@ class ParameterKeys(NamedTuple):
     order: str
     defaults: str
 
-
-OWNERSHIP = prefix("3.0.0") + "ownership"
 
 _START_2_0_0 = prefix("2.0.0")
 TAGS = _START_2_0_0 + "tags"
