@@ -9,7 +9,7 @@ from amalthea_uros._internal.similar import did_you_mean
 from amalthea_uros.compare.measured.receptions import ARROW, receptions
 from amalthea_uros.compare.results import Statistic
 from amalthea_uros.errors import InvalidArgumentError
-from amalthea_uros.measure.baselines import with_baseline
+from amalthea_uros.measure.baselines import subtracted_objects, with_baseline
 from amalthea_uros.measure.begins import ACTIVATION, END_OF_WAIT, FROM_ACTIVATION, ChainBegin, ModelBegins, begin_name
 from amalthea_uros.measure.series import WHOLE_TIME, MeasuredKind, Measurement, Series, TimeStatistics
 from amalthea_uros.names import require
@@ -179,7 +179,7 @@ def _targets(measurement: Measurement, names: Names, system: System) -> Iterator
         used |= {(each.kind, each.name, each.quantity) for each in parts}
         yield _meant(meaning, parts, system)
     reasons = dict.fromkeys((name for _, name, _ in used), "another quantity of it is what --as says")
-    reasons |= dict.fromkeys(_baselines(measurement), "it is a baseline, which was subtracted from others")
+    reasons |= dict.fromkeys(subtracted_objects(measurement.series), "it is a baseline, which was subtracted from others")
     for series in measurement.series:
         if (series.kind, series.name, series.quantity) in used:
             continue
@@ -187,12 +187,6 @@ def _targets(measurement: Measurement, names: Names, system: System) -> Iterator
         if target.is_unknown and series.name in reasons:
             target = replace(target, reason=reasons[series.name], is_unknown=False)
         yield target
-
-
-def _baselines(measurement: Measurement) -> set[str]:
-    """The objects whose times were subtracted from those of other objects."""
-    subtracted = [series.baseline for series in measurement.series if series.baseline is not None]
-    return {series.name for series in measurement.series if series.statistics in subtracted}
 
 
 def _check(measurement: Measurement, names: Names, system: System) -> None:

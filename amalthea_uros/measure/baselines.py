@@ -7,7 +7,7 @@ subtraction of the thesis (S. R. Bappanadu, University of Stuttgart, 2022, secti
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 from amalthea_uros.measure.series import Series, TimeStatistics, shifted
@@ -56,6 +56,12 @@ class Baselines:
 
     def _default(self, own: str) -> str | None:
         return None if own in self._names.values() else self._names.get("")
+
+
+def subtracted_objects(series: Collection[Series]) -> set[str]:
+    """The objects whose times were subtracted from those of other objects."""
+    subtracted = [each.baseline for each in series if each.baseline is not None]
+    return {each.name for each in series if each.statistics in subtracted}
 
 
 def without(series: Series, baseline: TimeStatistics) -> Series:

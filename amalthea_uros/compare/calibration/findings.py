@@ -13,6 +13,7 @@ from amalthea_uros.compare.calibration.values import CalibratedValue, Outcome
 from amalthea_uros.compare.calibration.wording import statistics_text
 from amalthea_uros.design.description.built_objects import BuiltObjects
 from amalthea_uros.diagnostics import Finding, Location, Severity
+from amalthea_uros.measure.baselines import subtracted_objects
 from amalthea_uros.measure.series import MeasuredKind
 from amalthea_uros.names import listed
 from amalthea_uros.timing.basics.quantities import JobMetric
@@ -57,7 +58,9 @@ def _unknown(path: Path, measured: Sequence[Measured], description: Described, b
     """The objects of the trace that have no place in the description, with what they may be."""
     known, chains = description.assembly.system.processes, description.assembly.system.chains
     topics = {message.topic for callback in built.callbacks for message in (callback.incoming, *callback.outgoing) if message}
-    names = dict.fromkeys(each.series.name for each in measured if each.series.kind is not MeasuredKind.CHAIN)
+    series = [each.series for each in measured]
+    used = subtracted_objects(series)
+    names = dict.fromkeys(each.name for each in series if each.kind is not MeasuredKind.CHAIN and each.name not in used)
     for name in names:
         if not built.knows(name) and name not in known and name not in topics and name not in chains:
             advice = did_you_mean(name, known)
