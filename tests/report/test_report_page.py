@@ -52,7 +52,15 @@ def section(page, anchor):
 def rows(page, anchor, caption):
     (found,) = section(page, anchor).xpath(f".//table[starts-with(normalize-space(caption), '{caption}')]")
     heads = [text(cell) for cell in found.xpath("./thead/tr/*")]
-    return {text(row[0]): dict(zip(heads, map(text, row), strict=True)) for row in found.xpath("./tbody/tr")}
+    shown = {}
+    for row in found.xpath("./tbody/tr"):
+        # A long remark has a row of its own below the others.
+        if row.get("class") == "remark":
+            shown[name][heads[-1]] = text(row)
+        else:
+            name = text(row[0])
+            shown[name] = dict(zip(heads, map(text, row), strict=True))
+    return shown
 
 
 @pytest.mark.parametrize("path", ALL, ids=lambda path: path.name)
