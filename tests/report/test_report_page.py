@@ -52,7 +52,7 @@ def section(page, anchor):
 def rows(page, anchor, caption):
     (found,) = section(page, anchor).xpath(f".//table[starts-with(normalize-space(caption), '{caption}')]")
     heads = [text(cell) for cell in found.xpath("./thead/tr/*")]
-    shown = {}
+    shown, name = {}, ""
     for row in found.xpath("./tbody/tr"):
         # A long remark has a row of its own below the others.
         if row.get("class") == "remark":
