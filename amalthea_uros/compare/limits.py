@@ -85,7 +85,7 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     series = measured.get((limit.object, limit.metric or ""))
     missing = _not_measured(limit)
     if missing or series is None:
-        return MeasuredLimit.of(limit, not_observed(missing or "it was not measured"), samples=0)
+        return MeasuredLimit.of(limit, not_observed(missing or "no value of it was measured"), samples=0)
     assert series.statistics is not None
     values, samples = _values(series), series.statistics.count
     if not limit.is_jitter:

@@ -59,7 +59,7 @@ def test_limits_that_were_not_measured_have_one_cause(watch):
     """So that long tables say it once, in one footnote."""
     run = amuros("compare", SIMPLE, watch(16, name="Executor_Task"), *ONE, "--output", "json")
     causes = {limit["reason"] for limit in json.loads(run.stdout)["requirements"] if limit["verdict"] == "not_observed"}
-    assert causes == {"it was not measured"}
+    assert causes == {"no value of it was measured"}
 
 
 def test_a_limit_that_is_missed(watch):
