@@ -40,7 +40,7 @@ LINES = {
     "names": 17,
     "perf": 1838,
     "platforms": 0,
-    "report": 8703,
+    "report": 8710,
     "services": 2716,
     "simulate": 8634,
     "source": 3719,

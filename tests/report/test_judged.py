@@ -1,14 +1,24 @@
 """What a report puts first, and what it says of each limit."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from support import ROOT
 
 from amalthea_uros import analyze, task, taskset
 from amalthea_uros.analyze.results.chains import LatencyQuantity
-from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.report.documents.judged import decisive_quantity, judged_items, limits_table, requirements_of, why
+from amalthea_uros.analyze.results.processes import RequirementResult
+from amalthea_uros.judge.verdict import Verdict, unknown
+from amalthea_uros.report.documents.analysis import _requirements
+from amalthea_uros.report.documents.judged import (
+    decisive_quantity,
+    judged_items,
+    limit_text,
+    limits_table,
+    requirements_of,
+    why,
+)
 from amalthea_uros.units import MICROSECOND as US
 from amalthea_uros.units import MILLISECOND as MS
 
@@ -80,3 +90,14 @@ def test_a_chain_is_not_met_if_its_jitter_is_unknown():
     claims = dict(cells(analysis, "what", "claim"))
     assert claims["reaction of factor-to-output"] == "exact"
     assert claims["reaction jitter of factor-to-output"] == "bound"
+
+
+def test_a_limit_that_is_no_time_is_shown_as_the_model_states_it():
+    """As `simulate` shows it, whether anything proves it or not."""
+    analysis = analyze(ADVANCED)
+    stated = analysis.requirements[0].stated
+    number = replace(stated, name="R", quantity="data age in cycles", limit=Fraction(3), is_time=False)
+    result = RequirementResult.of(number, unknown("it is not known"))
+    assert limit_text(result) == "≤ 3"
+    (row,) = _requirements(replace(analysis, requirements=(result,))).rows
+    assert row[2] == "at most 3"

@@ -21,6 +21,7 @@ from amalthea_uros.report.basics.document import (
     section,
     table,
 )
+from amalthea_uros.report.documents.judged import stated_limit
 from amalthea_uros.report.documents.missing_values import missing_section
 from amalthea_uros.report.documents.needs import NEEDS_HEADING, needs_table
 from amalthea_uros.report.documents.overloads import brief, overload_sections
@@ -46,7 +47,7 @@ from amalthea_uros.report.wording.chains import MESSAGE_COLUMNS as MESSAGE_COLUM
 from amalthea_uros.report.wording.closing_line import closing_line
 from amalthea_uros.services.analyze import AnalysisResult, analysis_result
 from amalthea_uros.timing.basics.quantities import JobMetric
-from amalthea_uros.units import Time, time_text
+from amalthea_uros.units import Time
 
 BAR = 20
 HOST_COLUMNS = ("callback", "kind", ">interval", ">best", ">worst", "can lose", "method")
@@ -332,10 +333,11 @@ def _requirements(analysis: Analysis) -> Table:
 
 def _requirement_row(requirement: RequirementResult, analysis: Analysis) -> tuple[Cell, ...]:
     is_certain = requirement.margin is not None and requirement.verdict is not Verdict.UNKNOWN
+    limit = stated_limit(requirement)
     return (
         requirement.name,
         limited_text(requirement.quantity, requirement.object),
-        "-" if requirement.limit is None else directed_limit(time_text(requirement.limit), is_upper=requirement.is_upper),
+        directed_limit(limit, is_upper=requirement.is_upper) if limit else "-",
         _value(requirement),
         verdict_badge(requirement),
         at_least(requirement.margin) if is_certain else "",

@@ -17,7 +17,7 @@ from amalthea_uros.report.basics.document import Cell, Table, table
 from amalthea_uros.report.wording.cells import UNKNOWN, at_least, at_most, limited_text, load_text, verdict_badge
 from amalthea_uros.timing.basics.quantities import jitter_name
 from amalthea_uros.timing.response import Claim
-from amalthea_uros.units import Rounding, Time, time_text
+from amalthea_uros.units import Rounding, Time, number_text, time_text
 
 #: Sorts the worst first.
 _Rank: TypeAlias = tuple[int, Fraction | float]
@@ -87,7 +87,15 @@ def _value_text(item: Judged, lower: Time | None, upper: Time | None) -> str:
 
 def limit_text(item: Judged) -> str:
     """The limit with its direction."""
-    return "-" if item.limit is None else f"{'≤' if item.is_upper else '≥'} {time_text(item.limit)}"
+    limit = stated_limit(item)
+    return f"{'≤' if item.is_upper else '≥'} {limit}" if limit else "-"
+
+
+def stated_limit(item: Judged) -> str:
+    """The limit of a time or of a number; "" if there is none."""
+    if item.limit is not None:
+        return time_text(item.limit)
+    return number_text(item.stated.limit) if item.stated is not None and item.stated.limit is not None else ""
 
 
 def margin_text(item: Judged) -> str:
