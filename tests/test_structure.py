@@ -35,7 +35,7 @@ LINES = {
     "inchron": 535,
     "inchron_bridge": 3349,
     "judge": 614,
-    "measure": 1133,
+    "measure": 1140,
     "metamodel": 3328,
     "names": 17,
     "perf": 1838,

@@ -6,7 +6,7 @@ do not. The times follow from when a job was activated, started and ended, and h
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, insort
 from collections.abc import Iterator
 
 import numpy as np
@@ -76,7 +76,8 @@ class _EndedJobs:
     Attributes
     ----------
     rows : start, end, activation, times in states, whether nothing is missing between it and the one before
-    lost_activations : the numbers of activations that became no job, in their order
+    lost_activations : number of activations that became no job
+    without_job : the numbers of these, in ascending order, unless a later activation has it again
     """
 
     rows: list[tuple[int, ...]] = field(default_factory=list)
@@ -84,16 +85,25 @@ class _EndedJobs:
     last: int | None = None
     incomplete: int = 0
     lost: int = 0
-    lost_activations: list[int] = field(default_factory=list)
+    lost_activations: int = 0
+    without_job: list[int] = field(default_factory=list)
 
     def add(
         self, job: int, segment: int, activation: int, start: int, end: int, times: dict[str, int], is_numbered: bool
     ) -> None:
         """Add one that has ended."""
-        number = job - bisect_left(self.lost_activations, job)
+        place = bisect_left(self.without_job, job)
+        if self.without_job[place : place + 1] == [job]:
+            del self.without_job[place]
+        number = job - place
         is_next = segment == self.segment and (not is_numbered or self.last is None or number == self.last + 1)
         self.rows.append((job, activation, start, end, *times.values(), is_next))
         self.segment, self.last = segment, number
+
+    def lose(self, activation: int) -> None:
+        """Add an activation that became no job."""
+        self.lost_activations += 1
+        insort(self.without_job, activation)
 
 
 @dataclass(slots=True)
@@ -146,7 +156,7 @@ class JobFollower:
         key, (before, after) = (process, instance), _STATES[kind]
         if kind == EventKind.ACTIVATION_LOST:
             self._number(key)
-            self._of(process).lost_activations.append(instance)
+            self._of(process).lose(instance)
             return
         job = self._open.get(key)
         if job is None or not job.is_process:
@@ -281,7 +291,7 @@ class JobFollower:
 
 
 def _series(kind: MeasuredKind, name: str, ended: _EndedJobs, begin: str) -> Iterator[Series]:
-    counts = Counts(incomplete=ended.incomplete, lost=ended.lost, lost_activations=len(ended.lost_activations))
+    counts = Counts(incomplete=ended.incomplete, lost=ended.lost, lost_activations=ended.lost_activations)
     if not ended.rows:
         yield Series(kind=kind, name=name, quantity=JobMetric.GROSS_EXECUTION_TIME, statistics=None, counts=counts)
         return

@@ -104,6 +104,13 @@ def test_an_activation_that_the_system_lost_is_no_job_of_which_times_are_missing
     assert found["Task", JobMetric.START_TO_START].counts == Counts(lost=1, lost_activations=1)
 
 
+def test_a_lost_activation_may_have_the_number_of_the_next_job():
+    rows = [(time + 100 * job, kind, job) for job in (0, 1, 2, 3) for time, kind, _ in PREEMPTED]
+    found = measured(task_events(*rows[:10], (190, E.ACTIVATION_LOST, 2), *rows[10:]))
+    assert values(found, JobMetric.ACTIVATE_TO_ACTIVATE) == [100, 100, 100]
+    assert found["Task", JobMetric.START_TO_START].counts == Counts(lost_activations=1)
+
+
 def test_a_runnable_does_not_execute_while_its_process_is_preempted():
     process = task_events(*PREEMPTED)
     runnable = [(11, E.RUNNABLE_START, TASK, 0, RUNNABLE, 0), (22, E.RUNNABLE_TERMINATE, TASK, 0, RUNNABLE, 0)]
