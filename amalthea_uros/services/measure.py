@@ -47,7 +47,7 @@ def measure(
 
     Parameters
     ----------
-    trace : a CAN log (candump .log; .asc, .blf, .trc, .mf4 with `pip install amuros[can]`), a trace of events such as .btf, or measured
+    trace : a CAN log (candump .log; .asc, .blf, .trc with `pip install amuros[can]`, .mf4 also with asammdf), a trace of events such as .btf, or measured
         values as .csv
     markers : a YAML file with the markers of a CAN log by the names of what they delimit
     start, end, name : the markers of one object instead, e.g. "0x18000001", and its name
