@@ -47,8 +47,8 @@ def measure(
 
     Parameters
     ----------
-    trace : a CAN log (candump .log; .asc, .blf, .trc with `pip install amuros[can]`, .mf4 also with asammdf), a trace of events such as .btf, or measured
-        values as .csv
+    trace : a CAN log (candump .log; .asc, .blf, .trc with `pip install amuros[can]`, .mf4 also with asammdf), a trace of events
+        such as .btf, or measured values as .csv
     markers : a YAML file with the markers of a CAN log by the names of what they delimit
     start, end, name : the markers of one object instead, e.g. "0x18000001", and its name
     counter : where the number of the job is in the payload of both, e.g. "byte 0", or a signal, e.g. "Debug.Counter"
