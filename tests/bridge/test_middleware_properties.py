@@ -6,8 +6,9 @@ import pytest
 from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
+from migration import model
 
-from amalthea_uros.bridge.basics.json_text import from_text, to_text
+from amalthea_uros.bridge.basics.json_text import from_text, to_text, typed_value
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.diagnostics import Location
@@ -19,6 +20,7 @@ from amalthea_uros.perf.network import Direction, Losses, Network, Purpose, Reco
 from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.perf.system import System
+from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.xmi.load import load
 from amalthea_uros.xmi.save import save
 
@@ -164,7 +166,7 @@ def test_an_executor_that_cannot_be_read_is_a_finding_and_its_task_unknown(befor
         ("&quot;count&quot;:1", "&quot;count&quot;:1001", "neither a number in a time nor a probability", set()),
         ("&quot;window&quot;:1", "&quot;window&quot;:-1", "neither a number in a time nor a probability", set()),
         # More than a word of memory holds, in which it would lose nothing.
-        ("&quot;window&quot;:1", "&quot;window&quot;:1" + 9 * "0", "neither a number in a time nor a probability", set()),
+        ("&quot;window&quot;:1", "&quot;window&quot;:1" + 9 * "0", "Losses.window is out of range", set()),
         ("&quot;per_billion&quot;:1", "&quot;per_billion&quot;:-1", "neither a number in a time nor a probability", set()),
         ("&quot;per_billion&quot;:1", "&quot;per_billion&quot;:1000", "neither a number in a time nor a probability", set()),
         ("&quot;directions&quot;:[&quot;to the agent&quot;]", "&quot;directions&quot;:[]", "need one direction or both", set()),
@@ -209,3 +211,19 @@ def test_messages_of_services_in_older_builds_are_findings(name, topic, is_old):
         hardware=Hardware(structures=(Structure(name="S", cores=(core,)),)), software=Software(tasks=(task,)), network=network
     )
     assert ("EXT006" in [each.rule for each in extract(build_model(system)).findings]) is is_old
+
+
+@pytest.mark.parametrize(("number", "where"), [(0, "Handle.interval"), (2**63, "Handle.jitter"), (-(2**63), "Handle.jitter")])
+def test_a_time_that_no_description_can_have_is_refused(number, where):
+    with pytest.raises(UnknownError, match=f"{where} is out of range"):
+        typed_value(int, number, where)
+
+
+def test_a_probability_is_a_number(tmp_path):
+    entries = '<entries probability="1.0"/><entries probability="1e999"/>'
+    task = f'<tasks name="A"><activityGraph><items t="ProbabilitySwitch">{entries}</items></activityGraph></tasks>'
+    path = tmp_path / "model.amxmi"
+    path.write_text(model("3.3.0", f"<swModel>{task}</swModel>"))
+    result = analyze_files([path])
+    assert "ProbabilitySwitch is incomplete: a probability is no number" in {finding.message for finding in result.findings}
+    assert result.analysis.processes[0].response is None

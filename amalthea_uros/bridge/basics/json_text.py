@@ -21,6 +21,9 @@ T = TypeVar("T")
 #: The key for the class of an object.
 TAG = "class"
 
+#: Whole numbers fit into 64 bits, as those of descriptions do.
+_LIMIT = 2**63
+
 #: A text of this length is no property that was built.
 _LONGEST = 10_000_000
 
@@ -121,6 +124,8 @@ def typed_value(hint: Any, content: Any, where: str) -> Any:
         return kind(content)
     if type(content) is not kind or (kind is float and not isfinite(content)):
         raise UnknownError(f"{where} is not of type {kind.__name__}")
+    if kind is int and (abs(content) >= _LIMIT or (content == 0 and where.endswith(".interval"))):
+        raise UnknownError(f"{where} is out of range")
     return content
 
 

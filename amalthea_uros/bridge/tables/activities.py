@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from math import isfinite
 from typing import Any, cast
 
 from amalthea_uros.bridge.basics.codecs import (
@@ -168,6 +169,9 @@ class _Activities(ClassTable):
                     return None
                 return perf.ExecutionNeed(needs=needs, locate=partial(context.location, element))
             case am.ProbabilitySwitch():
+                if not all(isfinite(entry.probability or 0.0) for entry in element.entries):
+                    context.note("EXT004", "ProbabilitySwitch is incomplete: a probability is no number", element)
+                    return None
                 return perf.ProbabilitySwitch(
                     branches=tuple(
                         perf.Chance(weight=entry.probability or 0.0, activities=ITEMS.extract(entry.items, context, element))
