@@ -6,7 +6,7 @@ whole time.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -19,6 +19,7 @@ from amalthea_uros.judge.evidence import ObservedProcess, ObservedValues
 from amalthea_uros.judge.limits import (
     NO_LIMIT,
     SystemLimit,
+    activation_limit,
     deadline_limit,
     deadline_of,
     is_from_period,
@@ -28,8 +29,9 @@ from amalthea_uros.judge.limits import (
 )
 from amalthea_uros.judge.verdict import ObservedVerdict, not_observed, observe, observe_process
 from amalthea_uros.measure.baselines import with_baseline
-from amalthea_uros.measure.series import Series
+from amalthea_uros.measure.series import Counts, Series
 from amalthea_uros.perf.constraints import Requirement, TimeMetric
+from amalthea_uros.perf.software import Process
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.settings import Settings
 from amalthea_uros.timing.context import TimingContext
@@ -40,10 +42,11 @@ _Measured = Mapping[tuple[str, str], Series]
 
 def judge_limits(system: System, settings: Settings, targets: Iterable[Target], rule: Rule) -> Iterator[MeasuredLimit]:
     """The verdicts on all deadlines, requirements and constraints."""
-    return (_with_doubt(limit, rule) for limit in _judged_limits(system, settings, targets))
+    return (_with_doubt(limit, rule) for limit in _judged_limits(system, settings, tuple(targets)))
 
 
-def _judged_limits(system: System, settings: Settings, targets: Iterable[Target]) -> Iterator[MeasuredLimit]:
+def _judged_limits(system: System, settings: Settings, targets: Collection[Target]) -> Iterator[MeasuredLimit]:
+    lost = {target.name: target.series.counts for target in targets if target.series.counts.lost_activations}
     measured = {
         (target.name, target.quantity): with_baseline(target.series)
         for target in targets
@@ -53,12 +56,11 @@ def _judged_limits(system: System, settings: Settings, targets: Iterable[Target]
     of_requirements = {
         (quantity_of(limit), limit.limit) for item, limits in stated if isinstance(item, Requirement) for limit in limits
     }
-    for limit in _deadlines(TimingContext.of_scheduling(system, settings)):
-        series = measured.get((limit.object, limit.metric or ""))
-        if series is not None and series.counts.lost_activations:
-            yield _with_lost_activations(limit, series)
+    for process, limit in _deadlines(TimingContext.of_scheduling(system, settings)):
+        if process.name in lost:
+            yield _with_lost_activations(limit or activation_limit(process), lost[process.name])
         # A deadline that is also stated as a requirement is judged once.
-        elif (quantity_of(limit), limit.limit) not in of_requirements:
+        elif limit is not None and (quantity_of(limit), limit.limit) not in of_requirements:
             yield _judged(limit, measured, system)
     for item, limits in stated:
         for limit in limits or [without_number(item)]:
@@ -74,11 +76,11 @@ def _with_doubt(limit: MeasuredLimit, rule: Rule) -> MeasuredLimit:
     return replace(limit, reason="; ".join(filter(None, (limit.reason, doubt))))
 
 
-def _deadlines(context: TimingContext) -> Iterator[SystemLimit]:
+def _deadlines(context: TimingContext) -> Iterator[tuple[Process, SystemLimit | None]]:
+    """The processes, and the limits that their deadlines are."""
     for name, process in context.system.processes.items():
         deadline = deadline_of(name, context)
-        if deadline is not None:
-            yield deadline_limit(process, deadline.value, deadline.is_implicit)
+        yield process, None if deadline is None else deadline_limit(process, deadline.value, deadline.is_implicit)
 
 
 def _judged(limit: SystemLimit, measured: _Measured, system: System) -> MeasuredLimit:
@@ -96,13 +98,11 @@ def _judged(limit: SystemLimit, measured: _Measured, system: System) -> Measured
     return MeasuredLimit.of(limit, observe(limit, values.jitter(period)), samples=samples)
 
 
-def _with_lost_activations(deadline: SystemLimit, series: Series) -> MeasuredLimit:
-    """The verdict on a process of which activations were lost, whatever its jobs responded after."""
-    assert series.statistics is not None
-    seen = ObservedProcess(response=_values(series), lost_activations=series.counts.lost_activations)
-    judgement = observe_process(deadline, seen)
+def _with_lost_activations(limit: SystemLimit, counts: Counts) -> MeasuredLimit:
+    """The verdict on a process of which activations were lost, whatever its jobs responded after, and whether it has a deadline."""
+    judgement = observe_process(limit, ObservedProcess(response=ObservedValues(), lost_activations=counts.lost_activations))
     assert judgement is not None
-    return MeasuredLimit.of(deadline, judgement, samples=series.statistics.count)
+    return MeasuredLimit.of(limit, judgement, samples=0)
 
 
 def _not_measured(limit: SystemLimit) -> str:

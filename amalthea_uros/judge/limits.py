@@ -164,11 +164,10 @@ def deadline_limit(process: Process, deadline: Time, is_implicit: bool = False) 
     )
 
 
-def activation_limit(task: Task) -> SystemLimit:
-    """The limit of the jobs of a task that are pending at the same time."""
-    return SystemLimit(
-        name=task.name, object=task.name, quantity="pending jobs", limit=task.activation_limit, item=task, is_time=False
-    )
+def activation_limit(process: Process) -> SystemLimit:
+    """The limit of the jobs of a process that are pending at the same time; interrupt service routines state none."""
+    most = process.activation_limit if isinstance(process, Task) else None
+    return SystemLimit(name=process.name, object=process.name, quantity="pending jobs", limit=most, item=process, is_time=False)
 
 
 def stated_limits(system: System) -> Iterator[tuple[Stated, tuple[SystemLimit, ...]]]:
