@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from migration import model
 
 from amalthea_uros.bridge.basics.json_text import from_text, to_text, typed_value
+from amalthea_uros.bridge.basics.middleware_flaws import flaw_of_executor, flaw_of_host
 from amalthea_uros.bridge.build import build_model
 from amalthea_uros.bridge.extract import extract
 from amalthea_uros.diagnostics import Location
@@ -16,6 +17,7 @@ from amalthea_uros.errors import UnknownError, WriteError
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.perf.executors import Executor, Handle, HandleKind, LoopKind, ThreadLoop, TriggerCondition, TriggerKind
 from amalthea_uros.perf.hardware import Core, Hardware, Structure
+from amalthea_uros.perf.host import Host, HostCallback, HostComputer, HostExecutor, HostTopic
 from amalthea_uros.perf.network import Direction, Losses, Network, Purpose, Recovery, Span, Transmission, Wire, WireKind
 from amalthea_uros.perf.software import Runnable, Software, Task
 from amalthea_uros.perf.stimuli import Custom
@@ -213,10 +215,26 @@ def test_messages_of_services_in_older_builds_are_findings(name, topic, is_old):
     assert ("EXT006" in [each.rule for each in extract(build_model(system)).findings]) is is_old
 
 
-@pytest.mark.parametrize(("number", "where"), [(0, "Handle.interval"), (2**63, "Handle.jitter"), (-(2**63), "Handle.jitter")])
-def test_a_time_that_no_description_can_have_is_refused(number, where):
-    with pytest.raises(UnknownError, match=f"{where} is out of range"):
-        typed_value(int, number, where)
+@pytest.mark.parametrize("number", [2**63, -(2**63)])
+def test_a_number_that_no_description_can_have_is_refused(number):
+    with pytest.raises(UnknownError, match=r"Handle\.jitter is out of range"):
+        typed_value(int, number, "Handle.jitter")
+
+
+@pytest.mark.parametrize("times", [{"interval": 0}, {"interval": -1}, {"interval": 1, "jitter": -1}])
+def test_messages_come_after_some_time(times):
+    handle = Handle(name="H", kind=HandleKind.SUBSCRIPTION, runnable="R", **times)
+    executor = Executor(name="E", task="T", spin="R", loop=ThreadLoop(kind=LoopKind.CONTINUOUS, timeout=1), handles=(handle,))
+    assert "'H' is not valid" in flaw_of_executor(executor, System())
+    assert flaw_of_host(Host(topics=(HostTopic(name="t", **times),))) == "the topic 't' is not valid"
+
+
+def test_a_timer_of_the_host_has_a_period():
+    span = Span(least=1, most=1)
+    timer = HostCallback(name="C", kind=HandleKind.TIMER, execution=span, period=0)
+    executor = HostExecutor(name="E", computer="c", callbacks=(timer,))
+    host = Host(computers=(HostComputer(name="c", cores=1),), executors=(executor,))
+    assert flaw_of_host(host) == "the callback 'C' is not valid"
 
 
 def test_a_probability_is_a_number(tmp_path):

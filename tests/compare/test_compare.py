@@ -155,7 +155,9 @@ def test_lost_activations_are_missed_as_in_the_simulation_that_lost_them(tmp_pat
 @pytest.mark.parametrize("has_deadline", [True, False])
 def test_activations_are_lost_though_no_job_ends_and_without_a_deadline(has_deadline, tmp_path):
     model, trace = tmp_path / "app.yaml", tmp_path / "run.btf"
-    without = LOSING.replace("period: 25 ms", "times: {period: 75 ms, at: [0 ms, 25 ms, 60 ms]}").replace(", deadline: 100 ms", "")
+    without = LOSING.replace("period: 25 ms", "times: {period: 75 ms, at: [0 ms, 25 ms, 60 ms]}").replace(
+        ", deadline: 100 ms", ""
+    )
     model.write_text(LOSING if has_deadline else without)
     events = [(0, "activate", 0), (1, "start", 0), (25, "mtalimitexceeded", 1), (50, "mtalimitexceeded", 2), (60, "preempt", 0)]
     lines = [f"{1_000_000 * time},Core_0,0,T,U,{number},{event}" for time, event, number in events]

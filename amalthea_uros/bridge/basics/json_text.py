@@ -124,7 +124,7 @@ def typed_value(hint: Any, content: Any, where: str) -> Any:
         return kind(content)
     if type(content) is not kind or (kind is float and not isfinite(content)):
         raise UnknownError(f"{where} is not of type {kind.__name__}")
-    if kind is int and (abs(content) >= _LIMIT or (content == 0 and where.endswith(".interval"))):
+    if kind is int and abs(content) >= _LIMIT:
         raise UnknownError(f"{where} is out of range")
     return content
 

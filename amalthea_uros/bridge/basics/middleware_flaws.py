@@ -7,10 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 from amalthea_uros.perf.executors import Executor
-from amalthea_uros.perf.host import Host, HostExecutor, HostPolicy
+from amalthea_uros.perf.host import Host, HostExecutor, HostPolicy, HostTopic
 from amalthea_uros.perf.network import BILLION, MOST_LOST, Losses, Network, Purpose, Recovery, Transmission
 from amalthea_uros.perf.stimuli import Custom
 from amalthea_uros.perf.system import System
+from amalthea_uros.units import Time
 
 
 def flaw_of_executor(executor: Executor, system: System) -> str | None:
@@ -20,6 +21,9 @@ def flaw_of_executor(executor: Executor, system: System) -> str | None:
     busy = () if executor.busy_wait is None else (executor.busy_wait,)
     if not all(0 <= each.sleep_early <= each.sleep for each in (executor.loop, executor.place or executor.loop)):
         return "a sleep can be shorter by more than its time"
+    for handle in executor.handles:
+        if not _is_above_zero(handle.interval) or handle.jitter < 0:
+            return f"the interval or jitter of {handle.name!r} is not valid"
     return _missing("runnable", (executor.spin, *called, *takes, *busy), system.runnables)
 
 
@@ -37,7 +41,7 @@ def flaw_of_network(network: Network, system: System) -> str | None:
 
 def _flaw_of_losses(losses: Losses) -> str | None:
     """What no description can state: it would lose less than it says, or make a simulation fail."""
-    is_counted = 1 <= losses.count <= MOST_LOST and 0 < losses.window < 2**63 and not losses.per_billion
+    is_counted = 1 <= losses.count <= MOST_LOST and losses.window > 0 and not losses.per_billion
     is_share = not losses.count and not losses.window and 0 < losses.per_billion < BILLION
     if not losses.directions or len(set(losses.directions)) < len(losses.directions):
         return "losses need one direction or both"
@@ -46,7 +50,7 @@ def _flaw_of_losses(losses: Losses) -> str | None:
 
 def _flaw_of_recovery(recovery: Recovery) -> str | None:
     """A side that asks again after no time would never do anything else."""
-    if not (0 < recovery.asks_after < 2**63 and 0 < recovery.agent_asks_every < 2**63):
+    if recovery.asks_after <= 0 or recovery.agent_asks_every <= 0:
         return "the times until missing acknowledgements are asked for are not above zero"
     parts = recovery.sent_parts, recovery.received_parts, recovery.agent_sent_parts
     return "a number of parts is not above zero" if any(each is not None and each < 1 for each in parts) else None
@@ -66,6 +70,10 @@ def has_old_topic(transmission: Transmission) -> bool:
     return any(f"{topic}_{kind}_" in name and not topic.endswith(f"/{kind}") for kind in ("request", "response"))
 
 
+def _is_above_zero(time: Time | None) -> bool:
+    return time is None or time > 0
+
+
 def _missing(kind: str, names: Iterable[str], known: Any) -> str | None:
     return next((f"undefined {kind} {name!r}" for name in names if name not in known), None)
 
@@ -81,6 +89,7 @@ def flaw_of_host(host: Host) -> str | None:
     flaws = [
         _missing("computer", (executor.computer for executor in host.executors), computers),
         *map(_flaw_of_host_executor, host.executors),
+        *map(_flaw_of_host_topic, host.topics),
     ]
     return next(filter(None, flaws), None)
 
@@ -93,9 +102,15 @@ def _flaw_of_host_executor(executor: HostExecutor) -> str | None:
         return f"{executor.name!r} has no thread"
     for callback in executor.callbacks:
         spans = callback.execution.least < 0 or (callback.execution.most or 1) < max(1, callback.execution.least)
-        if spans or (callback.period is None) is (callback.topic is None) or (callback.period or 1) < 1 or callback.depth < 1:
+        is_kind_clear = (callback.period is None) is not (callback.topic is None)
+        if spans or not is_kind_clear or not _is_above_zero(callback.period) or callback.depth < 1:
             return f"the callback {callback.name!r} is not valid"
     return None
+
+
+def _flaw_of_host_topic(topic: HostTopic) -> str | None:
+    is_valid = _is_above_zero(topic.interval) and topic.jitter >= 0 and topic.latency.least >= 0
+    return None if is_valid else f"the topic {topic.name!r} is not valid"
 
 
 def with_unknown_activation(system: System, names: Collection[str]) -> System:
