@@ -22,7 +22,7 @@ LINES = {
     "_version": 1,
     "am": 2,
     "analyze": 9283,
-    "bridge": 2945,
+    "bridge": 2950,
     "cli": 2615,
     "compare": 3840,
     "design": 6702,

@@ -84,6 +84,18 @@ def test_a_model_says_the_same_in_an_older_version(policy, tmp_path):
     assert answer([older])[1] == expected
 
 
+@pytest.mark.parametrize(("version", "deadline"), [("1.2.0", 7 * MILLISECOND), ("2.0.0", None)])
+def test_only_versions_without_the_feature_have_deadlines_in_properties(version, deadline, tmp_path):
+    kept = """<customProperties key="AMALTHEA 2.0.0: schedulingParameters/deadline">
+      <value t="Time" value="7" unit="ms"/></customProperties>"""
+    content = f"""<swModel><tasks name="A"/></swModel>
+      <osModel><operatingSystems name="OS"><taskSchedulers name="T"/></operatingSystems></osModel>
+      <mappingModel><taskAllocation task="A?type=Task" scheduler="T?type=TaskScheduler">{kept}</taskAllocation></mappingModel>"""
+    path = tmp_path / "model.amxmi"
+    path.write_text(model(version, content))
+    assert [each.deadline for each in answer([path])[0].mapping.tasks] == [deadline]
+
+
 def test_the_deadline_of_a_scheduler_below_another_is_kept_in_an_older_version(tmp_path):
     parameter = """<schedulingParameters key="deadline?type=SchedulingParameterDefinition">
       <value t="Time" value="7" unit="ms"/></schedulingParameters>"""

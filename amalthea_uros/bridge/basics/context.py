@@ -146,6 +146,12 @@ class Extracting:
             self.dropped.add(element)
 
     @staticmethod
+    def is_older(element: Element, *version: int) -> bool:
+        """Whether an object is part of a file of an older version than that."""
+        document = element.document
+        return document is not None and version_key(document.facts_version) < version
+
+    @staticmethod
     def location(element: Element) -> Location | None:
         """The location of an object."""
         document = element.document

@@ -15,7 +15,6 @@ from amalthea_uros.bridge.tables.parameters import Given, SchedulingDefinitions,
 from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.kept_properties import OWNERSHIP
-from amalthea_uros.metamodel.versions import version_key
 from amalthea_uros.perf import os as perf
 from amalthea_uros.perf.activities import Protection
 from amalthea_uros.units import Duration
@@ -29,16 +28,17 @@ class _SemaphoreEntry(ClassEntry):
             return super().fill(element, item, context)
         semaphore = super().fill(element, replace(item, ownership=True), context)
         if item.ownership is not _is_owned(item.kind):
+            assert isinstance(semaphore, am.Semaphore)
             kept = am.CustomProperty(key=OWNERSHIP, value=am.BooleanObject(value=item.ownership))
-            semaphore.custom_properties.append(kept)  # type: ignore[attr-defined]
+            semaphore.custom_properties.append(kept)
         return semaphore
 
     def values(self, element: Element, context: Extracting, *, strictly: bool = False) -> dict[str, Any] | None:
         values = super().values(element, context, strictly=strictly)
-        document = element.document
-        if values is not None and document is not None and version_key(document.facts_version) < (3, 0, 0):
-            properties = element.custom_properties  # type: ignore[attr-defined]
-            values["ownership"] = marked(OWNERSHIP, _is_owned(values["kind"])).extract(properties, context, element)
+        if values is not None and context.is_older(element, 3, 0, 0):
+            assert isinstance(element, am.Semaphore)
+            codec = marked(OWNERSHIP, _is_owned(values["kind"]))
+            values["ownership"] = codec.extract(element.custom_properties, context, element)
         return values
 
 

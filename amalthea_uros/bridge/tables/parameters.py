@@ -238,9 +238,10 @@ def extract_parameters(
     others: list[Parameter] = []
     stated = list(_stated(element, context))
     names = {name for name, _ in stated}
-    besides = _kept(element.custom_properties, SCHEDULING_PARAMETER) if kept is None else _kept(kept, PARENT_PARAMETER)
-    stated += [parameter for parameter in besides if parameter[0] not in names]
-    names |= {name for name, _ in stated}
+    if context.is_older(element, 2, 0, 0):
+        besides = _kept(element.custom_properties, SCHEDULING_PARAMETER) if kept is None else _kept(kept, PARENT_PARAMETER)
+        stated += [parameter for parameter in besides if parameter[0] not in names]
+        names |= {name for name, _ in stated}
     for name, values in (*(default for default in _defaults(defaults) if default[0] not in names), *stated):
         value = values[0]
         if name == PRIORITY and isinstance(value, int) and len(values) == 1:
