@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from amalthea_uros._internal.files import result_path
+from amalthea_uros._internal.file_writing import result_path
 from amalthea_uros.cli.ends import INTERRUPTED
 from amalthea_uros.cli.key_completion import OfKey
 from amalthea_uros.cli.options import paths_argument, seed_option, settings_options, workers_options

@@ -13,16 +13,8 @@ import click
 from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
-from amalthea_uros._internal.files import (
-    STANDARD_ERROR,
-    STANDARD_OUTPUT,
-    FileError,
-    check_writable,
-    is_standard_output,
-    is_stream,
-    resolved,
-    result_path,
-)
+from amalthea_uros._internal.file_writing import check_writable, result_path
+from amalthea_uros._internal.files import STANDARD_ERROR, STANDARD_OUTPUT, FileError, is_standard_output, is_stream, resolved
 from amalthea_uros.cli.parameters import INPUT, output_path
 from amalthea_uros.diagnostics import Finding, Severity
 from amalthea_uros.report import formats

@@ -11,7 +11,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self, cast
 
-from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable, replacing, write_bytes
+from amalthea_uros._internal.file_writing import replacing, write_bytes
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_stream, not_writable
 from amalthea_uros.diagnostics import Finding, Location, Severity
 from amalthea_uros.errors import InvalidArgumentError, WriteError
 from amalthea_uros.trace.table import Entity, EventTable, concatenate

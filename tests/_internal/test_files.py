@@ -4,17 +4,8 @@ import os
 
 import pytest
 
-from amalthea_uros._internal.files import (
-    FileError,
-    FileFlaw,
-    decode,
-    encode,
-    marked_encoding,
-    read_bytes,
-    read_text,
-    write_all,
-    write_bytes,
-)
+from amalthea_uros._internal.file_writing import write_all, write_bytes
+from amalthea_uros._internal.files import FileError, FileFlaw, decode, encode, marked_encoding, read_bytes, read_text
 
 
 def test_text_keeps_its_line_ends(tmp_path):

@@ -9,7 +9,8 @@ from support import ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros._internal import files
-from amalthea_uros._internal.files import is_open_file, read_bytes, reading_once, write_bytes
+from amalthea_uros._internal.file_writing import write_bytes
+from amalthea_uros._internal.files import is_open_file, read_bytes, reading_once
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE, MODEL_SIZE
 
 DESCRIPTION = ROOT / "samples" / "bodas-test-simple.yaml"

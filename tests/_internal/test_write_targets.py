@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from amalthea_uros._internal.files import FileError, is_standard_output, is_stream, replacing, write_all, write_bytes
+from amalthea_uros._internal.file_writing import replacing, write_all, write_bytes
+from amalthea_uros._internal.files import FileError, is_standard_output, is_stream
 
 
 def write_both_ways(path, data):
@@ -130,7 +131,7 @@ def test_an_open_file_is_written_to(tmp_path):
 @pytest.mark.parametrize("name", ["/dev/stdout", "/proc/self/fd/1", "/dev/fd/1"])
 def test_standard_output_that_is_a_file_gets_what_was_printed_before_too(name, tmp_path):
     code = (
-        "import pathlib; from amalthea_uros._internal.files import write_bytes; print('before');"
+        "import pathlib; from amalthea_uros._internal.file_writing import write_bytes; print('before');"
         f"write_bytes(pathlib.Path({name!r}), b'content\\n'); print('after')"
     )
     with (tmp_path / "out").open("wb") as out:

@@ -8,7 +8,8 @@ import pytest
 
 import amalthea_uros as amuros
 from amalthea_uros import am
-from amalthea_uros._internal import files as internal
+from amalthea_uros._internal.file_writing import write_all
+from amalthea_uros._internal.files import FileError
 from amalthea_uros.diagnostics import Severity
 from amalthea_uros.services.fix import fix_files
 from amalthea_uros.services.format import format_files
@@ -622,8 +623,8 @@ def test_writing_several_files_fails_as_a_whole(tmp_path):
     kept.write_bytes(b"1")
     removed.write_bytes(b"2")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(internal.FileError, match="directory"):
-        internal.write_all({kept: b"3", tmp_path / "new": b"4", tmp_path / "folder": b"5"}, [removed])
+    with pytest.raises(FileError, match="directory"):
+        write_all({kept: b"3", tmp_path / "new": b"4", tmp_path / "folder": b"5"}, [removed])
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == {"kept": b"1", "removed": b"2"}
-    internal.write_all({kept: b"3", tmp_path / "new": b"4"}, [removed])
+    write_all({kept: b"3", tmp_path / "new": b"4"}, [removed])
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == {"kept": b"3", "new": b"4"}

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from amalthea_uros._internal.files import FileError, read_bytes, read_text, reading_once, write_bytes
+from amalthea_uros._internal.file_writing import write_bytes
+from amalthea_uros._internal.files import FileError, read_bytes, read_text, reading_once
 from amalthea_uros._internal.limits import DESCRIPTION_SIZE
 from amalthea_uros._internal.paths import StrPath, is_description
 from amalthea_uros._internal.records import dataclass, replace

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 from amalthea_uros._internal.csv_cells import safe_cell
-from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_file, result_path, write_bytes
+from amalthea_uros._internal.file_writing import result_path, write_bytes
+from amalthea_uros._internal.files import STANDARD_OUTPUT, FileError, is_file
 from amalthea_uros.design.campaign.run import Record, Value
 from amalthea_uros.errors import InvalidArgumentError
 from amalthea_uros.xmi.emf.files import not_writable

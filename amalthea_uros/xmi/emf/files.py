@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from amalthea_uros._internal import files
+from amalthea_uros._internal.file_writing import write_all, write_bytes
 from amalthea_uros._internal.files import FileError, FileFlaw
 from amalthea_uros._internal.limits import ADVICE, MODEL_ELEMENTS, MODEL_SIZE
 from amalthea_uros.diagnostics import Finding, Location, Severity
@@ -56,7 +57,7 @@ def write_text(path: Path, content: FileText) -> None:
     WriteError : the file cannot be written.
     """
     try:
-        files.write_bytes(path, _data(content))
+        write_bytes(path, _data(content))
     except FileError as error:
         raise not_writable(error) from None
 
@@ -69,7 +70,7 @@ def write_texts(contents: Mapping[Path, FileText], removed: Collection[Path] = (
     WriteError : a file cannot be written; all files are as they were.
     """
     try:
-        files.write_all({path: _data(content) for path, content in contents.items()}, removed)
+        write_all({path: _data(content) for path, content in contents.items()}, removed)
     except FileError as error:
         raise not_writable(error) from None
 
