@@ -17,7 +17,7 @@ from amalthea_uros.inchron.project import Project
 from amalthea_uros.metamodel.factfile import FeatureFact, FeatureKind
 from amalthea_uros.metamodel.source import FileText, SourceText
 from amalthea_uros.xmi.emf.files import read_text
-from amalthea_uros.xmi.emf.problems import MAX_DEPTH, has_doctype, location, malformed, too_deep
+from amalthea_uros.xmi.emf.problems import MAX_DEPTH, has_doctype, line_at, location, malformed, too_deep
 
 SUFFIX = ".iprx"
 
@@ -77,7 +77,10 @@ class _Reader:
         try:
             self.parser.Parse(self.file.utf8, True)
         except expat.ExpatError as error:
-            opened = self.names[-1] if self.names else None
+            opened = None
+            if self.names:
+                name, offset = self.names[-1]
+                opened = name, line_at(self.file, offset)
             raise malformed(self.path, self.file, error, self.parser.ErrorByteIndex, opened) from None
         self.resolve()
         model = self.root["model"] if self.root is not None and not self.errors else None

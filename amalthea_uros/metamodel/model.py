@@ -105,8 +105,8 @@ class Document:
         """The version whose facts apply: that of the file, or the nearest older one."""
         return nearest_version(self.version)
 
-    def location_of(self, element: Element) -> Location | None:
-        """The location of an object in the file, or its origin; failing both, that of its container.
+    def location_of(self, element: Element, attribute: str = "") -> Location | None:
+        """The location of an object, or of one of its attributes, in the file, or its origin; failing both, that of its container.
 
         None if the document has no file either.
         """
@@ -114,7 +114,7 @@ class Document:
         while holder is not None:
             if holder in self.origins:
                 return self.origins[holder]
-            place = self.source.place_of(holder) if self.source is not None else None
+            place = self.source.place_of(holder, attribute) if self.source is not None else None
             if place is not None and self.path is not None:
                 return Location(self.path, *place)
             holder = holder.container

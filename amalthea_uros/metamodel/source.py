@@ -8,27 +8,17 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.tags import XmlContent, attributes_of_tag
 
 #: Most parts of a text of so many characters have only ASCII, which is found out faster than where others are.
 _CHUNK = 256
 _BEYOND_ASCII = re.compile(r"[^\x00-\x7f]+")
-_TAG_NAME = re.compile(r"<[^\s/>]+")
-_ATTRIBUTE = re.compile(r"""\s+(?P<name>[^\s=/>]+)\s*=\s*(?P<quoted>"[^"]*"|'[^']*')""")
-
-
-def attributes_of_tag(text: str, start: int) -> Iterator[re.Match[str]]:
-    """The attributes of the start tag at an offset of well-formed text, as matches with `name` and `quoted`."""
-    tag = _TAG_NAME.match(text, start)
-    at = tag.end() if tag else start
-    while attribute := _ATTRIBUTE.match(text, at):
-        yield attribute
-        at = attribute.end()
 
 
 class FileText:
@@ -94,33 +84,44 @@ class SourceText:
     version : AMALTHEA version that it declares
     prefixes : names of the special attributes
     elements : every object read from the text, in its order
-    byte_starts, byte_ends : see `start` and `end`, but counted in bytes of UTF-8
+    other_tags : of each start tag that gave no object, the number of objects before it
+    byte_starts : offsets of the start tags of the objects in bytes of UTF-8; None if they are those of the text, without the others
     """
 
     file: FileText
     version: str = ""
     prefixes: Prefixes = field(default=Prefixes())
     elements: Sequence[Element] = ()
-    byte_starts: Sequence[int] = ()
-    byte_ends: Sequence[int] = ()
+    other_tags: Sequence[int] = ()
+    byte_starts: Sequence[int] | None = None
 
     @cached_property
     def text(self) -> str:
         """The characters of the file."""
         return self.file.text
 
+    @cached_property
+    def content(self) -> XmlContent:
+        """The elements of the text."""
+        return XmlContent(self.text)
+
+    @cached_property
+    def starts(self) -> Sequence[int]:
+        """Offsets in `text` of the start tags of all objects. Found again when they are asked for, since to note them takes longer."""
+        if self.byte_starts is not None:
+            return [self.character_offset(offset) for offset in self.byte_starts]
+        others = {number + before for number, before in enumerate(self.other_tags)}
+        found = self.content.starts
+        return [start for number, start in enumerate(found) if number not in others] if others else found
+
     def start(self, place: int) -> int:
         """Offset in `text` of the start tag of the object at a place in `elements`."""
-        return self.character_offset(self.byte_starts[place])
-
-    def end(self, place: int) -> int:
-        """Offset after the content of an object: of its end tag, or after the tag of an empty element."""
-        return self.character_offset(self.byte_ends[place])
+        return self.starts[place]
 
     @cached_property
     def by_start(self) -> dict[int, int]:
         """Offset of a start tag -> place of its object in `elements`."""
-        return {self.start(place): place for place in range(len(self.elements))}
+        return {start: place for place, start in enumerate(self.starts)}
 
     @cached_property
     def _is_ascii(self) -> bool:
@@ -168,12 +169,11 @@ class SourceText:
         start = self.start(self.index[element])
         return self.position(self.attribute_offset(start, attribute) if attribute else start)
 
-    def place_of(self, element: Element) -> tuple[int, int, str] | None:
-        """Line and column of an object, and the text of the line; None if the object was not read from this text."""
-        index = self.index.get(element)
-        if index is None:
+    def place_of(self, element: Element, attribute: str = "") -> tuple[int, int, str] | None:
+        """Line and column of an object or one of its attributes, and the text of the line; None if it was not read from this text."""
+        if element not in self.index:
             return None
-        line, column = self.position(self.start(index))
+        line, column = self.position_of(element, attribute)
         return line, column, self.line(line)
 
     def position(self, offset: int) -> Position:

@@ -202,10 +202,8 @@ def start_tag(source, element) -> str:
 
 def span(source, element) -> tuple[int, int]:
     place = source.index[element]
-    start, end = source.start(place), source.end(place)
-    if source.text[end - 2 : end] == "/>" and "<" not in source.text[start + 1 : end]:
-        return start, end
-    return start, source.text.index(">", end) + 1
+    start = source.start(place)
+    return start, source.content.end(start).element
 
 
 def between(source, element) -> str:

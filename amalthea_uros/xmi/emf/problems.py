@@ -92,16 +92,20 @@ def malformed(
 
     Parameters
     ----------
-    open_element : what is not closed and the offset of its start tag, None if everything is
+    open_element : what is not closed and the line of its start tag, None if everything is
     """
     if not file.text.lstrip().startswith("<"):
         return refusal(path, file, 0, "XMI002", "not XML", "AMALTHEA models are XML files in UTF-8, plain or zipped.")
     reason = expat.errors.messages[error.code]
     if open_element and reason == expat.errors.XML_ERROR_NO_ELEMENTS:
-        name, start = open_element
-        line = file.utf8.count(b"\n", 0, start) + 1
+        name, line = open_element
         reason = f"unexpected end of file, the {name} on line {line} is not closed"
     return refusal(path, file, offset, "XMI002", f"not well-formed XML: {reason}")
+
+
+def line_at(file: FileText, offset: int) -> int:
+    """The line of an offset in bytes of UTF-8."""
+    return file.utf8.count(b"\n", 0, offset) + 1
 
 
 def lacks_namespace(utf8: bytes) -> bool:

@@ -1,14 +1,14 @@
 """Text of one file -> document: objects, and the references that are still to be resolved.
 
-The parser is expat, driven in one pass. The offsets of all objects are kept, so that line and column can be computed at any time,
-also of attributes, and beyond line 65,535, where libxml2 stops counting.
+The parser is expat, driven in one pass. Line and column of all objects can be found at any time, also of attributes, and beyond line
+65,535, where libxml2 stops counting: the order of the objects is that of the start tags in the text.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 from xml.parsers import expat
@@ -35,7 +35,7 @@ _append = list.append
 _new_list = list.__new__
 
 StartHandler = Callable[[str, dict[str, str]], None]
-EndHandler = Callable[[str], None]
+EndHandler = Callable[[str], object]
 
 
 #: References to be resolved when all documents are read, by feature: the objects that refer. Until then the instance dictionary of such
@@ -43,9 +43,8 @@ EndHandler = Callable[[str], None]
 PendingReferences = Mapping[FeaturePlan, list[Element]]
 
 #: An open element: its object (None for an `href` element), what was read of it so far (its instance dictionary, with the texts of
-#: its references until they are resolved), its possible child elements, and its index in document order (else -1). A plain tuple,
-#: because one is made for every element.
-Frame = tuple[Any, dict[str, Any], dict[str, FeaturePlan], int]
+#: its references until they are resolved), and its possible child elements. A plain tuple, because one is made for every element.
+Frame = tuple[Any, dict[str, Any], dict[str, FeaturePlan]]
 
 
 class ReadResult(NamedTuple):
@@ -120,9 +119,7 @@ class _ModelReader:
         self.parser = parser
         self.header: ModelHeader | None = None
         self.elements: list[Element] = []
-        # Lists, because an array converts each number, which takes four times as long.
-        self.starts: list[int] = []
-        self.ends: list[int] = []
+        self.other_tags: list[int] = []
         #: The open elements; an `href` element has no object of its own.
         self.stack: list[Frame] = []
         self.references: defaultdict[FeaturePlan, list[Element]] = defaultdict(list)
@@ -140,7 +137,9 @@ class _ModelReader:
         self.skipped_depth = 0
         self.skipped_start = 0
         self.start_part: StartHandler | None = None
-        self.end_part: EndHandler = self.end_handler()
+        # Closes the innermost element without a function of Python, which would run once per element: `next` takes the name of the
+        # tag as the value at the end of the iterator, which it never reaches.
+        self.end_part: EndHandler = partial(next, iter(self.stack.pop, None))
         self.collector = FindingCollector()
 
     def read(self) -> ReadResult:
@@ -167,13 +166,22 @@ class _ModelReader:
         assert isinstance(root, Amalthea)
         assert header is not None
         document = Document(root, header.version, self.path)
-        prefixes = Prefixes(header.xmi_id, header.xsi_type, header.type_prefix)
-        document.source = source = SourceText(self.content, header.version, prefixes, self.elements, self.starts, self.ends)
+        document.source = source = self.source(header)
         document.prolog, document.epilog = self.prolog, self.epilog
         document.namespaces = header.namespaces
         findings = [collected.finding(self.path, source) for collected in self.collector]
         return ReadResult(
             document, self.references, self.hrefs, self.referables, self.xmi_ids, self.href_content, self.href_types, findings
+        )
+
+    def source(self, header: ModelHeader) -> SourceText:
+        """The text, with what was read of it so far."""
+        return SourceText(
+            self.content,
+            version=header.version,
+            prefixes=Prefixes(header.xmi_id, header.xsi_type, header.type_prefix),
+            elements=self.elements,
+            other_tags=self.other_tags,
         )
 
     @cached_property
@@ -198,24 +206,22 @@ class _ModelReader:
         assert plan is not None
         root = _new(plan.cls)
         set_container(root, None)
-        self.stack.append((root, root.__dict__, plan.children, 0))
+        self.stack.append((root, root.__dict__, plan.children))
         self.elements.append(root)
-        self.starts.append(self.offset)
-        self.ends.append(0)
         for key in attributes.keys() - header.own_attributes:
             self.unknown_attribute(root, plan, key, attributes[key])
 
     def start_handler(self, header: ModelHeader) -> StartHandler:
         """The handler of start tags, with everything it needs in local names: it runs once per element."""
-        parser, stack, part = self.parser, self.stack, plans(header.facts_version).part
+        stack, part = self.stack, plans(header.facts_version).part
         xmi_id, xsi_type = header.xmi_id, header.xsi_type
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
-        elements, add_element, add_start, add_end = self.elements, self.elements.append, self.starts.append, self.ends.append
-        add_id, referables, references = self.xmi_ids.append, self.referables, self.references
+        add_element, add_id = self.elements.append, self.xmi_ids.append
+        referables, references = self.referables, self.references
         pending_extras, max_depth = self.pending_extras, problems.MAX_DEPTH
 
         def start(name: str, attributes: dict[str, str]) -> None:
-            parent, held, children, _ = stack[-1]
+            parent, held, children = stack[-1]
             feature = children.get(name)
             if feature is None:
                 self.start_unknown(name)
@@ -248,10 +254,8 @@ class _ModelReader:
                 held[feature_name] = element
             set_container(element, parent)
             values = element.__dict__
-            stack.append((element, values, plan.children, len(elements)))
+            stack.append((element, values, plan.children))
             add_element(element)
-            add_start(parser.CurrentByteIndex)
-            add_end(0)
             if plan.wave is not None:
                 referables[plan].append(element)
             known = plan.attributes
@@ -280,18 +284,11 @@ class _ModelReader:
 
         return start
 
-    def end_handler(self) -> EndHandler:
-        """The handler of end tags."""
-        parser, stack, ends, pending_extras = self.parser, self.stack, self.ends, self.pending_extras
-
-        def end(_name: str) -> None:
-            element, _, _, place = stack.pop()
-            if place >= 0:
-                ends[place] = parser.CurrentByteIndex
-                if pending_extras:
-                    self.attach_extras(element, None)
-
-        return end
+    def end_with_extras(self, _name: str) -> None:
+        """The handler of end tags in a file with content that has to be kept."""
+        element, _, _ = self.stack.pop()
+        if element is not None and self.pending_extras:
+            self.attach_extras(element, None)
 
     def start_href(self, frame: Frame, feature: FeaturePlan, attributes: dict[str, str], type_name: str | None) -> None:
         """A reference to another file: `<task href="amlt:/#T?type=Task"/>`."""
@@ -302,7 +299,7 @@ class _ModelReader:
         text = href.partition("#")[2] or href
         if type_name is not None:
             self.href_types[text] = type_name.rpartition(":")[2]
-        holder, held, _, _ = frame
+        holder, held, _ = frame
         texts = held.get(feature.name)
         if texts is None:
             texts = held[feature.name] = []
@@ -312,12 +309,13 @@ class _ModelReader:
             return
         self.href = (holder, feature.name, len(texts))
         texts.append(text)
-        self.stack.append((None, {}, {}, -1))
+        self.other_tags.append(len(self.elements))
+        self.stack.append((None, {}, {}))
 
     # What the metamodel does not know
 
     def start_unknown(self, name: str) -> None:
-        holder, _, children, _ = self.stack[-1]
+        holder, _, children = self.stack[-1]
         where = type(holder).__name__ if holder is not None else "a reference"
         message = f"unknown element <{name}> in {where} (AMALTHEA {self.version})"
         self.collector.add(
@@ -358,11 +356,13 @@ class _ModelReader:
         """Skip the element of the current start tag and everything in it."""
         self.skipped_depth = 1
         self.skipped_start = self.offset
+        self.other_tags.append(len(self.elements))
         self.parser.StartElementHandler = self.start_skipped
         self.parser.EndElementHandler = self.end_skipped
 
     def start_skipped(self, _name: str, _attributes: dict[str, str]) -> None:
         self.skipped_depth += 1
+        self.other_tags.append(len(self.elements))
 
     def end_skipped(self, _name: str) -> None:
         self.skipped_depth -= 1
@@ -399,6 +399,7 @@ class _ModelReader:
         holder = self.stack[-1][0] if self.stack else None
         if holder is not None:
             self.pending_extras.setdefault(holder, []).append(raw)
+            self.parser.EndElementHandler = self.end_part = self.end_with_extras
         elif self.stack and self.href is not None:
             self.href_content.setdefault(self.href, []).append(raw)
         else:
@@ -451,6 +452,8 @@ class _ModelReader:
         return problems.too_deep(self.path, self.content, self.offset)
 
     def malformed(self, error: expat.ExpatError) -> ReadError:
-        held = next(((frame[0], frame[3]) for frame in reversed(self.stack) if frame[0] is not None), None)
-        open_element = (type(held[0]).__name__, self.starts[held[1]]) if held else None
-        return problems.malformed(self.path, self.content, error, self.parser.ErrorByteIndex, open_element)
+        held = next((frame[0] for frame in reversed(self.stack) if frame[0] is not None), None)
+        opened = None
+        if held is not None and self.header is not None:
+            opened = (type(held).__name__, self.source(self.header).position_of(held).line)
+        return problems.malformed(self.path, self.content, error, self.parser.ErrorByteIndex, opened)

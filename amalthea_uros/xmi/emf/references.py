@@ -18,12 +18,12 @@ from amalthea_uros._internal.limits import ADVICE, MODEL_REFERENCES
 from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.similar import Suggestions
 from amalthea_uros.diagnostics import Finding, Severity
+from amalthea_uros.errors import ReadError
 from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
 from amalthea_uros.xmi.emf.plan import NAMESPACES, WAVES, FeaturePlan, plans, reference_texts
-from amalthea_uros.xmi.emf.problems import location, refusal
 from amalthea_uros.xmi.emf.reader import ReadResult
 
 #: Of objects with the same name, so many are listed.
@@ -160,12 +160,8 @@ class _Resolver:
         if len(texts) > 1:
             self.listed[document] += len(texts)
             if self.listed[document] > MODEL_REFERENCES:
-                source, path = document.source, document.path
-                assert source
-                assert path
-                offset = source.byte_starts[source.index[holder]]
                 message = f"the file has more than {MODEL_REFERENCES:,} references in lists"
-                raise refusal(path, source.file, offset, "XMI004", message, ADVICE)
+                raise ReadError([Finding("XMI004", Severity.ERROR, message, document.location_of(holder), ADVICE)])
         return texts
 
     def find(self, use: Use, text: str) -> Element:
@@ -276,7 +272,7 @@ class _Resolver:
         """The order of uses: the number of the file, and the offset of the object."""
         source = use.document.source
         assert source
-        return self.numbers[use.document], source.byte_starts[source.index[use.holder]]
+        return self.numbers[use.document], source.start(source.index[use.holder])
 
     def missing_files(self, document: Document, uses: list[tuple[str, Use]]) -> Finding:
         """One finding for all references from a document to files that were not loaded."""
@@ -333,10 +329,7 @@ class _Resolver:
     def finding(
         self, rule: str, severity: Severity, message: str, help_text: str, document: Document, element: Element, attribute: str
     ) -> Finding:
-        source, path = document.source, document.path
-        assert source
-        assert path
-        where = location(path, source, source.byte_starts[source.index[element]], attribute)
+        where = document.location_of(element, attribute)
         return Finding(rule, severity, message, where, help_text, element.qualified_name)
 
 

@@ -9,22 +9,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from functools import cached_property
+from itertools import zip_longest
 from math import copysign
 from typing import Any, NamedTuple
 
-from amalthea_uros.metamodel.element import Element
+from amalthea_uros.metamodel.element import Element, extras_if_any
 from amalthea_uros.metamodel.model import Document
-from amalthea_uros.metamodel.source import SourceText, attributes_of_tag
+from amalthea_uros.metamodel.source import SourceText
+from amalthea_uros.metamodel.tags import ElementEnd, attributes_of_tag
 from amalthea_uros.xmi.emf.escape import escape, unescape
 from amalthea_uros.xmi.emf.plan import ClassPlan, reference_texts
 from amalthea_uros.xmi.emf.serializer import Child, ChildPart, ChildReference, EmfSerializer, tag_of
 
 _NAME = re.compile(r"[^\s/>]+")
-_NODE = re.compile(
-    r"(?P<space>\s+)|(?P<comment><!--.*?-->|<\?.*?\?>)|(?P<text>(?:<!\[CDATA\[.*?\]\]>|[^<])+)|(?P<close></[^>]*>)"
-    r"|<(?P<open>[^\s/>]+)(?:[^>\"']|\"[^\"]*\"|'[^']*')*>",
-    re.DOTALL,
-)
 
 
 class SourcePiece(NamedTuple):
@@ -49,26 +47,28 @@ class SourceMerger:
         self.source = source
         self.text = source.text
         self.serializer = serializer
+        self.ends: dict[int, ElementEnd] = {}
 
-    def end(self, place: int) -> int:
-        """Offset after an element."""
-        source, text = self.source, self.text
-        end = source.end(place)
-        # After the tag of an empty element, but at the end tag of one with content.
-        if text.startswith("/>", end - 2) and text.find("<", source.start(place) + 1, end) < 0:
-            return end
-        return text.index(">", end) + 1
+    def end(self, place: int) -> ElementEnd:
+        """Where an object ends."""
+        found = self.ends.get(place)
+        if found is None:
+            found = self.ends[place] = self.source.content.end(self.source.start(place))
+        return found
 
     def is_same_part(self, tag: str, place: int) -> bool:
         """Whether the object was held by the same feature when it was read."""
         start = self.source.start(place)
         return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
 
-    def ends_in_emf_layout(self, children: list[Child], at: int, end: int, separator: str) -> list[int] | None:
+    def ends_in_emf_layout(self, holder: Element, children: list[Child], at: int, end: int, separator: str) -> list[int] | None:
         """The offset after each child if the content between two offsets consists of exactly these, in order and in EMF's layout."""
+        extras = extras_if_any(holder)
+        if extras and extras.content:
+            return None
         text, source, index = self.text, self.source, self.source.index
         ends = []
-        for child in children:
+        for child, following in zip_longest(children, children[1:]):
             if not text.startswith(separator, at):
                 return None
             at += len(separator)
@@ -80,9 +80,32 @@ class SourceMerger:
                 place = index.get(child.element)
                 if place is None or source.start(place) != at or not self.is_same_part(child.feature.xml_name, place):
                     return None
-                at = self.end(place)
+                at = self.end_before(child, following, separator) or self.end(place).element
             ends.append(at)
         return ends if at <= end and text[at:end] == separator[: -len("  ")] else None
+
+    def end_before(self, child: ChildPart, following: Child | None, separator: str) -> int | None:
+        """The offset after a child in EMF's layout that is followed by another one, without a look at its tags; None if it needs one.
+
+        In a text without comments, unknown elements and references to other files, all that precedes the next child is the last object
+        in this one, if nothing was removed between them. Nothing was moved into this one if it is not modified.
+        """
+        if not self.has_objects_only or not isinstance(following, ChildPart) or child.element in self.document.changes.modified:
+            return None
+        place = self.source.index.get(following.element)
+        last: Element | None = self.source.elements[place - 1] if place else None
+        while last is not None and last is not child.element:
+            last = last.container
+        if place is None or last is None:
+            return None
+        end = self.source.start(place) - len(separator)
+        return end if self.text[end - 1] == ">" else None
+
+    @cached_property
+    def has_objects_only(self) -> bool:
+        """Whether each tag of the text is one of an object, and its tags are those that were read."""
+        source = self.source
+        return not source.other_tags and source.byte_starts is None and source.content.has_tags_only
 
     # Start tags
 
@@ -192,18 +215,17 @@ class SourceMerger:
             start = at
             place = self.source.by_start.get(start)
             if place is not None:
-                at = self.end(place)
+                at = self.end(place).element
                 part = parts.get(self.source.elements[place])
                 stays = part is not None and self.is_same_part(part.feature.xml_name, place)
                 yield SourcePiece(self.text[start:at], part if stays else None, stays)
                 continue
-            match = _NODE.match(self.text, start)
-            assert match
+            match = self.source.content.node(start)
             if not match["open"]:
                 at = match.end()
                 yield SourcePiece(match[0], None, True)
                 continue
-            at = self._element_end(match)
+            at = self.source.content.end(start).element
             raw = self.text[start:at]
             href = self._take_href(element, match, hrefs)
             if href is None and raw in extra:
@@ -211,21 +233,6 @@ class SourceMerger:
                 yield SourcePiece(raw, None, True)
             else:
                 yield SourcePiece(raw, href, href is not None)
-
-    def _element_end(self, opening: re.Match[str]) -> int:
-        """Offset after an element without an object, whose start tag is given."""
-        depth, match = 1, opening
-        if opening[0].endswith("/>"):
-            return opening.end()
-        while depth:
-            found = _NODE.match(self.text, match.end())
-            assert found
-            match = found
-            if match["close"]:
-                depth -= 1
-            elif match["open"] and not match[0].endswith("/>"):
-                depth += 1
-        return match.end()
 
     def _take_href(self, element: Element, opening: re.Match[str], hrefs: list[ChildReference]) -> ChildReference | None:
         """The present reference that an element of the source represents; each is used once."""

@@ -99,7 +99,7 @@ class _Writer:
             self.out.append(opening)
             self.merged_content(self.root, tag, children, "", place, at)
             opening_at = 1
-            self.out.append(self.source.text[self.merger.end(place) :])
+            self.out.append(self.source.text[self.merger.end(place).element :])
         else:
             prolog, epilog = self.outside
             self.out += [_DECLARATION, self.newline, *(raw + self.newline for raw in prolog)]
@@ -143,9 +143,9 @@ class _Writer:
         place = self.index.get(element)
         if self.merger is None or self.source is None or (place is not None and not self.merger.is_same_part(tag, place)):
             place = None
-        elif place is not None and self.is_untouched(place):
+        elif place is not None and self.is_untouched(place, self.merger.end(place).element):
             self.copied[len(self.out)] = [element]
-            self.out.append(self.source.text[self.source.start(place) : self.merger.end(place)])
+            self.out.append(self.source.text[self.source.start(place) : self.merger.end(place).element])
             return
         if self.depth == MAX_DEPTH:
             # The reader refuses deeper nesting, and `part` would exceed the recursion limit of Python.
@@ -155,12 +155,12 @@ class _Writer:
         self.whole_part(feature, element, place, indent)
         self.depth -= 1
 
-    def is_untouched(self, place: int) -> bool:
-        """Whether nothing was modified of an object in the source, and in it."""
+    def is_untouched(self, place: int, end: int) -> bool:
+        """Whether nothing was modified of an object in the source, and in it, up to its end."""
         assert self.source
         number = bisect_left(self.modified_places, place)
         following = self.modified_places[number : number + 1]
-        return not following or self.source.byte_starts[following[0]] >= self.source.byte_ends[place]
+        return not following or self.source.start(following[0]) >= end
 
     def whole_part(self, feature: FeaturePlan, element: Element, place: int | None, indent: str) -> None:
         """Write an object that was modified, or that is not in the source."""
@@ -229,12 +229,12 @@ class _Writer:
             else:
                 out.append("/>")
             return
-        content, end = at + 1, self.source.end(place)
-        ends = self.merger.ends_in_emf_layout(children, content, end, separator)
+        content, (end, after) = at + 1, self.merger.end(place)
+        ends = self.merger.ends_in_emf_layout(element, children, content, end, separator)
         if ends is not None:
             out.append(">")
             self.emf_content(children, ends, content, indent + _INDENT)
-            out.append(text[end - len(separator) + len(_INDENT) : self.merger.end(place)])
+            out.append(text[end - len(separator) + len(_INDENT) : after])
             return
         items = self.merger.content(element, children, content, end, separator)
         if not items and content != end:
@@ -249,7 +249,7 @@ class _Writer:
                 out.append(item)
                 if item.isspace():
                     inner = item.rpartition("\n")[2]
-        out.append(text[end : self.merger.end(place)])
+        out.append(text[end:after])
 
     def emf_content(self, children: list[Child], ends: list[int], at: int, indent: str) -> None:
         """Children that are in the source in EMF's layout, each up to an offset; successive ones that are copied are one piece."""
@@ -272,8 +272,8 @@ class _Writer:
 
     def piece_of(self, pair: tuple[Child, int]) -> tuple[FeaturePlan, bool]:
         """The feature of a child, and whether nothing was modified in it."""
-        child, _ = pair
-        return child.feature, isinstance(child, ChildPart) and self.is_untouched(self.index[child.element])
+        child, end = pair
+        return child.feature, isinstance(child, ChildPart) and self.is_untouched(self.index[child.element], end)
 
 
 def canonical_prefixes(document: Document) -> Prefixes:

@@ -103,7 +103,7 @@ class _NodeParser:
             parser.Parse(utf8, True)
         except expat.ExpatError as error:
             held = next((node for node in reversed(self.stack) if node is not None), None)
-            place = (held.type or held.tag, self.origins.starts[held.origin]) if held else None
+            place = (held.type or held.tag, problems.line_at(self.content, self.origins.starts[held.origin])) if held else None
             raise problems.malformed(self.path, self.content, error, parser.ErrorByteIndex, place) from None
         assert self.root is not None
         names = {node.tag for node in self.nodes} | {node.type for node in self.nodes}

@@ -94,10 +94,11 @@ def read_trees(models: ModelSet, versions: Sequence[str]) -> tuple[list[ReadResu
     made: dict[Node, Element] = {}
     results = []
     for tree, version in zip(models.trees, versions, strict=True):
-        result = read_events(tree.path, tree.content, TreeEvents(tree, models.origins, texts, made))
+        events = TreeEvents(tree, models.origins, texts, made)
+        result = read_events(tree.path, tree.content, events)
         document = result.document
         assert document.source is not None
-        document.source = replace(document.source, version=version)
+        document.source = replace(document.source, version=version, byte_starts=events.starts)
         document.migrated_from = version
         results.append(result)
     return results, {text: made[node] for node, text in texts.of.items() if node in made}
@@ -138,6 +139,7 @@ class TreeEvents:
     Attributes
     ----------
     made : the objects that the reader has made so far
+    starts : the offset of the start tag of each in the file, in bytes of UTF-8
     """
 
     StartElementHandler: Callable[[str, dict[str, str]], None]
@@ -148,6 +150,7 @@ class TreeEvents:
     def __init__(self, tree: Tree, origins: Origins, texts: _Texts, made_of: dict[Node, Element]) -> None:
         self.tree, self.origins, self.texts, self.made_of = tree, origins, texts, made_of
         self.made: list[Element] = []
+        self.starts: list[int] = []
         self.CurrentByteIndex = 0
 
     def SetParamEntityParsing(self, _flag: int) -> None:  # noqa: N802 (names of expat)
@@ -165,7 +168,7 @@ class TreeEvents:
         }
         self.CurrentByteIndex = self.origins.starts[root.origin]
         hrefs = self.refer(root)
-        self.StartElementHandler("am:" + root.tag, root.attributes)
+        self.begin("am:" + root.tag, root.attributes)
         self.made_of[root] = self.made[0]
         self.report_hrefs(hrefs)
         report = self.reporter()
@@ -177,7 +180,7 @@ class TreeEvents:
 
     def reporter(self) -> Callable[[Node], None]:
         """What reports a node and everything in it, with all that it needs in local names: it runs once per node."""
-        made, made_of, starts, ends = self.made, self.made_of, self.origins.starts, self.origins.ends
+        begin, made, made_of, starts, ends = self.begin, self.made, self.made_of, self.origins.starts, self.origins.ends
 
         def report(node: Node) -> None:
             if node.comments:
@@ -187,10 +190,7 @@ class TreeEvents:
                 attributes["xsi:type"] = "am:" + node._type
             hrefs = self.refer(node) if node.references else None
             self.CurrentByteIndex = starts[origin]
-            before = len(made)
-            # The reader changes its handlers while it skips something.
-            self.StartElementHandler(tag, attributes)
-            if len(made) > before:
+            if begin(tag, attributes):
                 made_of[node] = made[-1]
             if hrefs:
                 self.report_hrefs(hrefs)
@@ -200,6 +200,15 @@ class TreeEvents:
             self.EndElementHandler(tag)
 
         return report
+
+    def begin(self, tag: str, attributes: dict[str, str]) -> bool:
+        """Report a start tag; whether the reader made an object of it."""
+        # The reader changes its handlers while it skips something.
+        self.StartElementHandler(tag, attributes)
+        if len(self.made) == len(self.starts):
+            return False
+        self.starts.append(self.CurrentByteIndex)
+        return True
 
     def refer(self, node: Node) -> list[tuple[str, dict[str, str]]]:
         """Write the references of a node as attributes; those that must be elements, because a target is in another file."""
@@ -215,7 +224,7 @@ class TreeEvents:
     def report_hrefs(self, hrefs: list[tuple[str, dict[str, str]]]) -> None:
         """Report references as elements, at the present place."""
         for name, attributes in hrefs:
-            self.StartElementHandler(name, attributes)
+            self.begin(name, attributes)
             self.EndElementHandler(name)
 
     def outside(self, comments: list[str]) -> None:

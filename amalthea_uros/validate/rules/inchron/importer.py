@@ -8,7 +8,8 @@ from amalthea_uros.metamodel import classes as am
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document
 from amalthea_uros.metamodel.naming import TYPE_MARK, encode, name_of, segments
-from amalthea_uros.metamodel.source import SourceText, attributes_of_tag
+from amalthea_uros.metamodel.source import SourceText
+from amalthea_uros.metamodel.tags import attributes_of_tag
 from amalthea_uros.validate.context import Context
 
 _NEWEST = "3.2.0"
