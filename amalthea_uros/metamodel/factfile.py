@@ -177,6 +177,8 @@ def _feature(line: str) -> FeatureFact:
     name, *words = declaration.split()
     kind = _KINDS.get(words[0], FeatureKind.ATTRIBUTE)
     type_name, *flags = words if kind is FeatureKind.ATTRIBUTE else words[1:]
+    if not flags and not default:
+        return FeatureFact(name, kind, type_name)
     bounds = next((flag for flag in flags if _BOUNDS.fullmatch(flag)), "")
     lower, upper = _bounds(bounds)
     return FeatureFact(

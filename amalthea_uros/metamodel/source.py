@@ -111,8 +111,8 @@ class SourceText:
         if self.byte_starts is not None:
             return [self.character_offset(offset) for offset in self.byte_starts]
         others = {number + before for number, before in enumerate(self.other_tags)}
-        found = self.content.starts
-        return [start for number, start in enumerate(found) if number not in others] if others else found
+        starts = self.content.starts
+        return [start for number, start in enumerate(starts) if number not in others] if others else starts
 
     def start(self, place: int) -> int:
         """Offset in `text` of the start tag of the object at a place in `elements`."""

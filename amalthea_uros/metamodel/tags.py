@@ -57,9 +57,9 @@ class XmlContent:
 
     def node(self, at: int) -> re.Match[str]:
         """The piece of content at an offset, as a match with `space`, `comment`, `text`, `close` or `open`, the name of the tag."""
-        found = _NODE.match(self.text, at)
-        assert found
-        return found
+        node = _NODE.match(self.text, at)
+        assert node
+        return node
 
     def end(self, start: int) -> ElementEnd:
         """Where an element ends."""
@@ -85,7 +85,7 @@ class XmlContent:
     @cached_property
     def has_tags_only(self) -> bool:
         """Whether there is nothing but tags and text after the XML declaration."""
-        # One character is found twenty times faster than two.
+        # A search for one character is twenty times faster than for two.
         return ("!" not in self.text or "<!" not in self.text) and self.text.find("<?", 1) < 0
 
     def _scanned_end(self, opening: re.Match[str]) -> ElementEnd:

@@ -23,6 +23,7 @@ _SUFFIXES = re.compile(r"\.amxmi(?:-[a-z]+)?")
 ZIP_ENTRY = "ResourceContents"
 
 _SHORTEST_ELEMENT = len("<a/>")
+_COUNTED_AT_ONCE = 2**18
 
 _DECLARED = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
 
@@ -120,10 +121,11 @@ def _read_text(path: Path, max_size: int) -> FileText:
 
 def _check_elements(path: Path, utf8: bytes, limit: int) -> None:
     """Refuse a model with too many elements before any object is made: a hundred kilobytes of ZIP may hold ten million."""
-    # Comments count too, since they are kept. Tags are counted only if that may make a difference, because it takes long.
-    if len(utf8) < limit * _SHORTEST_ELEMENT:
-        return
-    tags = utf8.count(b"<")
+    # Comments count too, since they are kept. Tags are counted only as far as the rest may make a difference, because it takes long.
+    tags = at = 0
+    while at < len(utf8) and tags + (len(utf8) - at) / _SHORTEST_ELEMENT > limit:
+        tags += utf8.count(b"<", at, at + _COUNTED_AT_ONCE)
+        at += _COUNTED_AT_ONCE
     if tags > limit and tags - utf8.count(b"</") > limit:
         raise FileError(path, f"the file has more than {limit:,} elements", ADVICE, FileFlaw.SIZE)
 

@@ -64,7 +64,7 @@ class ReadResult(NamedTuple):
     references: PendingReferences
     hrefs: PendingReferences
     referables: Mapping[ClassPlan, list[Element]]
-    xmi_ids: list[tuple[Element, str]]
+    xmi_ids: dict[Element, str]
     href_content: Mapping[tuple[Element, str, int], list[str]]
     href_types: Mapping[str, str]
     findings: list[Finding]
@@ -125,7 +125,7 @@ class _ModelReader:
         self.references: defaultdict[FeaturePlan, list[Element]] = defaultdict(list)
         self.hrefs: defaultdict[FeaturePlan, list[Element]] = defaultdict(list)
         self.referables: defaultdict[ClassPlan, list[Element]] = defaultdict(list)
-        self.xmi_ids: list[tuple[Element, str]] = []
+        self.xmi_ids: dict[Element, str] = {}
         #: Comments and the like, until the part that follows them is read.
         self.pending_extras: dict[Element, list[str]] = {}
         #: The same for what is inside `href` elements, and the key of the last one of these.
@@ -216,8 +216,7 @@ class _ModelReader:
         stack, part = self.stack, plans(header.facts_version).part
         xmi_id, xsi_type = header.xmi_id, header.xsi_type
         foreign_prefix = None if header.type_prefix == TYPE_PREFIX else header.type_prefix
-        add_element, add_id = self.elements.append, self.xmi_ids.append
-        referables, references = self.referables, self.references
+        add_element, referables, references, xmi_ids = self.elements.append, self.referables, self.references, self.xmi_ids
         pending_extras, max_depth = self.pending_extras, problems.MAX_DEPTH
 
         def start(name: str, attributes: dict[str, str]) -> None:
@@ -263,7 +262,7 @@ class _ModelReader:
                 attribute = known.get(key)
                 if attribute is None:
                     if key == xmi_id:
-                        add_id((element, value))
+                        xmi_ids[element] = value
                     else:
                         self.unknown_attribute(element, plan, key, value)
                 elif attribute.is_reference:

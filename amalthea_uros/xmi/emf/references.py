@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import chain
+from itertools import chain, compress
+from operator import is_, not_
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote
@@ -23,7 +24,7 @@ from amalthea_uros.metamodel.containment import ReferenceList
 from amalthea_uros.metamodel.element import Element
 from amalthea_uros.metamodel.model import Document, Spelling
 from amalthea_uros.metamodel.naming import TYPE_MARK, decode, encode, has_prefix, unique_name
-from amalthea_uros.xmi.emf.plan import NAMESPACES, WAVES, FeaturePlan, plans, reference_texts
+from amalthea_uros.xmi.emf.plan import NAMESPACES, WAVES, ClassPlan, FeaturePlan, plans, reference_texts
 from amalthea_uros.xmi.emf.reader import ReadResult
 
 #: Of objects with the same name, so many are listed.
@@ -88,19 +89,30 @@ class _Resolver:
     def index(self, wave: int) -> None:
         """Enter the objects whose names are known in a wave under these."""
         self.matches.clear()
-        by_id, in_namespace = self.by_id, self.in_namespace
+        by_id = self.by_id
         for plan, elements in chain.from_iterable(result.referables.items() for result in self.results):
             if plan.wave != wave:
                 continue
-            suffix = TYPE_MARK + plan.cls.__name__
-            is_usual = not has_prefix(plan.cls)
-            for element in elements:
-                # The usual case; the general function takes three times as long.
-                is_short = is_usual and element not in in_namespace
-                name = encode(element.__dict__.get("name")) + suffix if is_short else unique_name(element)
+            names = self.names(plan, elements)
+            named = dict(zip(names, elements, strict=True))
+            if len(named) == len(elements) and by_id.keys().isdisjoint(named):
+                by_id.update(named)
+                continue
+            for name, element in zip(names, elements, strict=True):
                 first = by_id.setdefault(name, element)
                 if first is not element:
                     self.shared.setdefault(name, [first]).append(element)
+
+    def names(self, plan: ClassPlan, elements: list[Element]) -> list[str]:
+        """The unique names of objects of a class."""
+        if has_prefix(plan.cls):
+            return list(map(unique_name, elements))
+        # The usual case; the general function takes three times as long.
+        in_namespace, suffix = self.in_namespace, TYPE_MARK + plan.cls.__name__
+        return [
+            unique_name(element) if element in in_namespace else encode(element.__dict__.get("name")) + suffix
+            for element in elements
+        ]
 
     def pending(self, wave: int) -> Iterator[tuple[ReadResult, FeaturePlan, list[Element]]]:
         """The references of a wave: the objects that refer by a feature in a file."""
@@ -211,7 +223,7 @@ class _Resolver:
     def by_xmi_id(self) -> dict[Document, dict[str, Element]]:
         """Objects by the `xmi:id` in their file, the first of several; for files whose ids are not unique names."""
         return {
-            result.document: {xmi_id: element for element, xmi_id in reversed(result.xmi_ids) if element.is_referable}
+            result.document: {xmi_id: element for element, xmi_id in reversed(result.xmi_ids.items()) if element.is_referable}
             for result in self.results
         }
 
@@ -232,9 +244,12 @@ class _Resolver:
 
     def check_xmi_ids(self, result: ReadResult) -> None:
         """Keep and report every `xmi:id` that is not the unique name, as after renaming an object with a text editor."""
-        for element, xmi_id in result.xmi_ids:
-            if self.by_id.get(xmi_id) is element:
-                continue
+        ids = result.xmi_ids
+        # The usual case is that all of them are right.
+        are_right = list(map(is_, map(self.by_id.get, ids.values()), ids))
+        if all(are_right):
+            return
+        for element, xmi_id in compress(ids.items(), map(not_, are_right)):
             canonical = unique_name(element) if element.is_referable else ""
             if canonical == xmi_id:
                 continue

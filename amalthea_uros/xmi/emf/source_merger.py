@@ -51,10 +51,10 @@ class SourceMerger:
 
     def end(self, place: int) -> ElementEnd:
         """Where an object ends."""
-        found = self.ends.get(place)
-        if found is None:
-            found = self.ends[place] = self.source.content.end(self.source.start(place))
-        return found
+        end = self.ends.get(place)
+        if end is None:
+            end = self.ends[place] = self.source.content.end(self.source.start(place))
+        return end
 
     def is_same_part(self, tag: str, place: int) -> bool:
         """Whether the object was held by the same feature when it was read."""
