@@ -28,8 +28,8 @@ class OrderGap(StrEnum):
 
     NO_PRIORITY = "it has no priority"
     OTHER_WITHOUT_PRIORITY = "a task of its scheduler has no priority"
-    NO_DEADLINE = "it has no deadline"
-    OTHER_WITHOUT_DEADLINE = "a task of its scheduler has no deadline"
+    NO_DEADLINE = "no deadline is stated for its scheduler"
+    OTHER_WITHOUT_DEADLINE = "another task of its scheduler has no deadline stated for it"
 
     @property
     def is_of_priority(self) -> bool:
