@@ -158,7 +158,10 @@ def test_nothing_is_simulated_in_an_order_that_is_not_stated():
 def test_deadlines_that_the_scheduler_does_not_know_leave_the_order_open(policy):
     # 6 us of 8 us, and 3 us of 20 us, as above.
     first, second = analysed([(8, 6, True), (20, 3, True)], [None, None], policy=policy).processes
-    assert (first.verdict, first.reason) == ("unknown", "no deadline is stated for its scheduler; as the lowest it needs up to 9 us")
+    assert (first.verdict, first.reason) == (
+        "unknown",
+        "no deadline is stated for its scheduler; as the lowest it needs up to 9 us",
+    )
     assert (second.verdict, second.response.worst) == ("met", 15 * US)
 
 

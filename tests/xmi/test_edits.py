@@ -1,6 +1,7 @@
 """A change shows only where it was made, however the file is laid out."""
 
 import difflib
+from itertools import product
 
 import pytest
 from support import DATA, MODEL, meaning
@@ -254,3 +255,47 @@ def test_a_value_that_is_none_of_its_type_stays_once(tmp_path):
     model[PeriodicStimulus, "S"].recurrence.value = 5
     amuros.save(model, canonical=True)
     assert '<recurrence value="5" unit="ms"/>' in path.read_text()
+
+
+EMF = MODEL.format("""
+  <swModel>
+    <labels name="A">
+      <size value="1" unit="bit"/>
+    </labels>
+    <labels name="B"/>{between}
+    <labels name="C">
+      <size value="2" unit="bit"/>
+    </labels>
+    <labels name="D"/>
+  </swModel>
+""")
+
+
+@pytest.mark.parametrize("between", ["", "\n", "<!-- about C -->", "\n    <!-- about C -->", "\n    <unknown/>", " text>"])
+@pytest.mark.parametrize(("removed", "modified"), [pair for pair in product(["", *"ABCD"], "ABCD") if pair[0] != pair[1]])
+def test_objects_that_stay_are_copied_with_what_is_between_them_but_not_with_one_that_was_removed(
+    tmp_path, between, removed, modified
+):
+    path = tmp_path / "model.amxmi"
+    path.write_text(EMF.format(between=between))
+    model = amuros.load(path)
+    if removed:
+        model.documents[0].root.sw_model.labels.remove(model[Label, removed])
+    model[Label, modified].constant = True
+    amuros.save(model)
+    again = amuros.load(path)
+    assert [label.name for label in again.all(Label)] == [name for name in "ABCD" if name != removed]
+    assert meaning(again) == meaning(model)
+    assert between.strip() in path.read_text()
+
+
+@pytest.mark.parametrize("between", ["<unknown/>", "\n    <unknown/>"])
+def test_an_unknown_element_can_be_removed(tmp_path, between):
+    path = tmp_path / "model.amxmi"
+    path.write_text(EMF.format(between=between))
+    model = amuros.load(path)
+    model.documents[0].root.sw_model.extras.content.clear()
+    model[Label, "D"].constant = True
+    amuros.save(model)
+    assert path.read_text().count("labels") == 6
+    assert between.strip() not in path.read_text()

@@ -1,5 +1,7 @@
 """What a model does not know is written again so that everything is read as before, and what would not be is not written."""
 
+import re
+
 import pytest
 from effort import every, examples
 from hypothesis import given
@@ -12,7 +14,9 @@ from amalthea_uros import load, save
 from amalthea_uros.am import Label, PeriodicStimulus, Task, Time
 from amalthea_uros.errors import WriteError
 from amalthea_uros.metamodel.element import extras_of
-from amalthea_uros.metamodel.tags import ElementEnd
+from amalthea_uros.metamodel.features import containments_of
+from amalthea_uros.metamodel.tags import ElementEnd, attributes_of_tag
+from amalthea_uros.xmi.emf.escape import unescape
 from amalthea_uros.xmi.emf.source_merger import SourceMerger
 from amalthea_uros.xmi.emf.writer import document_text
 
@@ -133,6 +137,30 @@ def test_the_canonical_form_of_any_file_is_a_fixed_point(model, rng):
     once = canonical(text)
     assert canonical(once) == once
     assert said(parse(once)) == said(parse(text))
+
+
+@examples(16)
+@given(model=models(12), rng=st.randoms(use_true_random=False))
+def test_each_object_is_found_where_it_stands(model, rng):
+    document = model.documents[0]
+    source = parse(Hostile(rng, document.version).text(document_text(document))).documents[0].source
+    for element, start in zip(source.elements, source.starts, strict=True):
+        assert is_at(element, source.text, start)
+
+
+def is_at(element, text, start) -> bool:
+    """Whether the tag at an offset is that of an object."""
+    attributes = {each["name"]: unescape(each["quoted"][1:-1]) for each in attributes_of_tag(text, start)}
+    tag = re.match(r"<([^\s/>]+)", text[start:])[1]
+    holder = element.container
+    if holder is None:
+        return tag.endswith(":Amalthea")
+    names = {feature.xml_name for feature in containments_of(type(holder)) if holds(holder.__dict__.get(feature.name), element)}
+    return tag in names and attributes.get("name") == element.__dict__.get("name", attributes.get("name"))
+
+
+def holds(value, element) -> bool:
+    return value is element or (isinstance(value, list) and any(part is element for part in value))
 
 
 @pytest.mark.parametrize("path", every(5, hand_written()[:40]) + corpus("jdom")[:10])

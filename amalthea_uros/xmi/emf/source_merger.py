@@ -8,6 +8,7 @@ attributes and elements.
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from itertools import zip_longest
@@ -87,19 +88,28 @@ class SourceMerger:
     def end_before(self, child: ChildPart, following: Child | None, separator: str) -> int | None:
         """The offset after a child in EMF's layout that is followed by another one, without a look at its tags; None if it needs one.
 
-        In a text without comments, unknown elements and references to other files, all that precedes the next child is the last object
-        in this one, if nothing was removed between them. Nothing was moved into this one if it is not modified.
+        In a text without comments, unknown elements and references to other files, nothing but this child is before the next one,
+        unless something was removed between them.
         """
-        if not self.has_objects_only or not isinstance(following, ChildPart) or child.element in self.document.changes.modified:
+        place = self.source.index.get(following.element) if isinstance(following, ChildPart) else None
+        if place is None or not self.has_objects_only:
             return None
-        place = self.source.index.get(following.element)
-        last: Element | None = self.source.elements[place - 1] if place else None
-        while last is not None and last is not child.element:
-            last = last.container
-        if place is None or last is None:
-            return None
-        end = self.source.start(place) - len(separator)
-        return end if self.text[end - 1] == ">" else None
+        start = self.source.start(place)
+        end = start - len(separator)
+        is_certain = self.is_untouched(self.source.index[child.element], start) and self.text[end - 1] == ">"
+        return end if is_certain else None
+
+    def is_untouched(self, place: int, end: int) -> bool:
+        """Whether nothing was modified of an object in the source, and in it, up to its end."""
+        number = bisect_left(self.modified_places, place)
+        following = self.modified_places[number : number + 1]
+        return not following or self.source.start(following[0]) >= end
+
+    @cached_property
+    def modified_places(self) -> list[int]:
+        """Where the source has objects that were modified, also those that were removed."""
+        index = self.source.index
+        return sorted(index[element] for element in self.document.changes.modified if element in index)
 
     @cached_property
     def has_objects_only(self) -> bool:

@@ -8,7 +8,6 @@ formatted and commented, differs after saving only where the model differs.
 from __future__ import annotations
 
 import re
-from bisect import bisect_left
 from itertools import groupby
 
 from amalthea_uros.errors import WriteError
@@ -81,8 +80,6 @@ class _Writer:
         self.out: list[str] = []
         #: The objects whose text is copied with everything in it, successive ones of a feature, by the number of the piece in `out`.
         self.copied: dict[int, list[Element]] = {}
-        #: Where the source has objects that were modified.
-        self.modified_places = sorted(place for each in self.modified if (place := self.index.get(each)) is not None)
 
     def document(self) -> str:
         """The whole text."""
@@ -143,7 +140,7 @@ class _Writer:
         place = self.index.get(element)
         if self.merger is None or self.source is None or (place is not None and not self.merger.is_same_part(tag, place)):
             place = None
-        elif place is not None and self.is_untouched(place, self.merger.end(place).element):
+        elif place is not None and self.merger.is_untouched(place, self.merger.end(place).element):
             self.copied[len(self.out)] = [element]
             self.out.append(self.source.text[self.source.start(place) : self.merger.end(place).element])
             return
@@ -154,13 +151,6 @@ class _Writer:
         self.depth += 1
         self.whole_part(feature, element, place, indent)
         self.depth -= 1
-
-    def is_untouched(self, place: int, end: int) -> bool:
-        """Whether nothing was modified of an object in the source, and in it, up to its end."""
-        assert self.source
-        number = bisect_left(self.modified_places, place)
-        following = self.modified_places[number : number + 1]
-        return not following or self.source.start(following[0]) >= end
 
     def whole_part(self, feature: FeaturePlan, element: Element, place: int | None, indent: str) -> None:
         """Write an object that was modified, or that is not in the source."""
@@ -272,8 +262,9 @@ class _Writer:
 
     def piece_of(self, pair: tuple[Child, int]) -> tuple[FeaturePlan, bool]:
         """The feature of a child, and whether nothing was modified in it."""
+        assert self.merger
         child, end = pair
-        return child.feature, isinstance(child, ChildPart) and self.is_untouched(self.index[child.element], end)
+        return child.feature, isinstance(child, ChildPart) and self.merger.is_untouched(self.index[child.element], end)
 
 
 def canonical_prefixes(document: Document) -> Prefixes:
