@@ -1,7 +1,7 @@
 """A change shows only where it was made, however the file is laid out."""
 
 import difflib
-from itertools import product
+from itertools import permutations, product
 
 import pytest
 from support import DATA, MODEL, meaning
@@ -299,3 +299,33 @@ def test_an_unknown_element_can_be_removed(tmp_path, between):
     amuros.save(model)
     assert path.read_text().count("labels") == 6
     assert between.strip() not in path.read_text()
+
+
+@pytest.mark.parametrize("order", [*permutations("ABCD")])
+def test_objects_in_another_order_are_written_in_that_order(tmp_path, order):
+    path = tmp_path / "model.amxmi"
+    path.write_text(EMF.format(between=""))
+    model = amuros.load(path)
+    model.documents[0].root.sw_model.labels.sort(key=lambda label: order.index(label.name))
+    amuros.save(model)
+    assert [label.name for label in amuros.load(path).all(Label)] == list(order)
+
+
+def test_an_object_that_was_moved_into_the_one_before_it(tmp_path):
+    path = tmp_path / "model.amxmi"
+    calls = "".join(f'\n        <items xsi:type="am:RunnableCall" runnable="{name}?type=Runnable"/>' for name in "QR")
+    group = '\n        <items xsi:type="am:Group" ordered="true">\n          <items xsi:type="am:Ticks"/>\n        </items>'
+    graph = f"\n      <activityGraph>{group}{calls}\n      </activityGraph>"
+    runnables = "".join(f'\n    <runnables name="{name}"/>' for name in "QR")
+    path.write_text(MODEL.format(f'\n  <swModel>\n    <tasks name="T">{graph}\n    </tasks>{runnables}\n  </swModel>\n'))
+    model = amuros.load(path)
+    (graph,) = (task.activity_graph for task in model.all(Task))
+    first, moved, _ = graph.items
+    graph.items.remove(moved)
+    first.items.append(moved)
+    amuros.save(model)
+    (graph,) = (task.activity_graph for task in amuros.load(path).all(Task))
+    assert [[type(item).__name__ for item in graph.items], [type(item).__name__ for item in graph.items[0].items]] == [
+        ["Group", "RunnableCall"],
+        ["Ticks", "RunnableCall"],
+    ]

@@ -88,16 +88,17 @@ class SourceMerger:
     def end_before(self, child: ChildPart, following: Child | None, separator: str) -> int | None:
         """The offset after a child in EMF's layout that is followed by another one, without a look at its tags; None if it needs one.
 
-        In a text without comments, unknown elements and references to other files, nothing but this child is before the next one,
-        unless something was removed between them.
+        In a text without comments, unknown elements and references to other files, all that precedes the next child is the last object
+        in this one, unless another object was between them. Nothing was moved into this one if it is not modified.
         """
         place = self.source.index.get(following.element) if isinstance(following, ChildPart) else None
-        if place is None or not self.has_objects_only:
+        if not place or not self.has_objects_only or child.element in self.document.changes.modified:
             return None
-        start = self.source.start(place)
-        end = start - len(separator)
-        is_certain = self.is_untouched(self.source.index[child.element], start) and self.text[end - 1] == ">"
-        return end if is_certain else None
+        last: Element | None = self.source.elements[place - 1]
+        while last is not None and last is not child.element:
+            last = last.container
+        end = self.source.start(place) - len(separator)
+        return end if last is not None and self.text[end - 1] == ">" else None
 
     def is_untouched(self, place: int, end: int) -> bool:
         """Whether nothing was modified of an object in the source, and in it, up to its end."""
