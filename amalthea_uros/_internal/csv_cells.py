@@ -6,15 +6,12 @@ Injection"), and runners of GitHub a line that begins with `::` for a command. A
 
 from __future__ import annotations
 
-import re
 from contextvars import ContextVar
 
 #: Whether cells are written as they are.
 RAW_NAMES: ContextVar[bool] = ContextVar("RAW_NAMES", default=False)
 
-#: A cell that already has apostrophes gets another one, so that no two texts become the same.
-_DANGEROUS = re.compile(r"'*(?:[=+\-@\t\r]|\s*::)")
-_NEUTRALISED = re.compile(r"'+(?:[=+\-@\t\r]|\s*::)")
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def safe_cell(text: str) -> str:
@@ -23,9 +20,15 @@ def safe_cell(text: str) -> str:
     >>> safe_cell("=1+1"), safe_cell("speed"), safe_cell("'=1")
     ("'=1+1", 'speed', "''=1")
     """
-    return text if RAW_NAMES.get() or _DANGEROUS.match(text) is None else f"'{text}"
+    return f"'{text}" if _is_dangerous(text) and not RAW_NAMES.get() else text
 
 
 def original_text(cell: str) -> str:
     """The text of a cell that `safe_cell` gave."""
-    return cell[1:] if _NEUTRALISED.match(cell) else cell
+    return cell[1:] if cell.startswith("'") and _is_dangerous(cell) else cell
+
+
+def _is_dangerous(text: str) -> bool:
+    """Whether a text is a formula or a command; one that already has apostrophes gets another one, so that no two become the same."""
+    rest = text.lstrip("'")
+    return rest.startswith(_FORMULA) or rest.lstrip().startswith("::")

@@ -16,7 +16,7 @@ from functools import cache, partial
 from operator import attrgetter
 from reprlib import recursive_repr
 from types import CodeType, FunctionType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass
@@ -39,42 +39,47 @@ else:
 def _record(cls: Any, *, frozen: bool = False, slots: bool = False, kw_only: bool = False, **shown: bool) -> Any:
     kinds = {name: kind for name, kind in cls.__annotations__.items() if not _is_of_class(kind)}
     given = {name: cls.__dict__[name] for name in kinds if name in cls.__dict__}
-    own = _OwnFields(kinds, given, kw_only)
-    members = {name: each for name, each in _members(own, slots=slots, frozen=frozen, **shown).items() if _is_open(cls, name)}
-    return _with_slots(cls, own, members) if slots else _without_slots(cls, own, members)
+    blueprint = _Blueprint(kinds, given, kw_only, frozen, shown)
+    makers = _makers(slots, frozen, **shown)
+    members: dict[str, _Later | None] = {name: _Later(name, make, blueprint) for name, make in makers.items()}
+    if shown.get("eq", True) and not frozen:
+        members["__hash__"] = None
+    blueprint.owner = (_with_slots if slots else _without_slots)(cls, blueprint, members)
+    return blueprint.owner
 
 
 def _is_of_class(kind: Any) -> bool:
     """Whether an annotation is that of a variable of the class, which is no field."""
-    return str(kind).removeprefix("typing.").startswith("ClassVar")
-
-
-def _is_open(cls: Any, name: str) -> bool:
-    """Whether a class has no such method; one that has only an `__eq__` of its own has None as its `__hash__` by that."""
-    return cls.__dict__.get(name) is None
+    return str(kind).startswith(("ClassVar", "typing.ClassVar"))
 
 
 #: By this mark `dataclasses` knows a field from a variable of the class.
 _FIELD = dataclasses._FIELD  # type: ignore[attr-defined]
 
 
-class _OwnFields(NamedTuple):
-    """The fields of a class without those that it inherits.
+class _Blueprint:
+    """What is known of a class before anything of it is made.
 
     Attributes
     ----------
-    kinds : annotations
-    given : defaults, and what `field` returned
+    owner : the class
+    kinds : annotations of its fields, without those that it inherits
+    given : their defaults, and what `field` returned
+    shown : the other options
     """
 
-    kinds: Mapping[str, Any]
-    given: Mapping[str, Any]
-    kw_only: bool
+    __slots__ = ("frozen", "given", "kinds", "kw_only", "owner", "shown")
 
-    def in_order(self, owner: Any) -> dict[str, Field[Any]]:
+    def __init__(
+        self, kinds: Mapping[str, Any], given: Mapping[str, Any], kw_only: bool, frozen: bool, shown: Mapping[str, bool]
+    ) -> None:
+        self.owner: Any = None
+        self.kinds, self.given, self.kw_only, self.frozen, self.shown = kinds, given, kw_only, frozen, shown
+
+    def in_order(self) -> dict[str, Field[Any]]:
         """All fields of the class: first those that it inherits."""
         every: dict[str, Field[Any]] = {}
-        for base in owner.__mro__[-1:0:-1]:
+        for base in self.owner.__mro__[-1:0:-1]:
             every |= getattr(base, "__dataclass_fields__", {})
         return every | {name: self._field(name) for name in self.kinds}
 
@@ -87,12 +92,12 @@ class _OwnFields(NamedTuple):
         return made
 
 
-def _with_slots(cls: Any, own: _OwnFields, members: Mapping[str, _Later | None]) -> Any:
+def _with_slots(cls: Any, blueprint: _Blueprint, members: Mapping[str, _Later | None]) -> Any:
     """The class again, because slots cannot be added to one."""
     inherited = {name for base in cls.__mro__[1:-1] for name in base.__dict__.get("__slots__", ())}
-    kept = {name: value for name, value in cls.__dict__.items() if name not in own.kinds and name not in _OF_EACH_OBJECT}
-    slots = tuple([name for name in own.kinds if name not in inherited])
-    made = type(cls)(cls.__name__, cls.__bases__, {**kept, **members, "__slots__": slots})
+    kept = {name: value for name, value in cls.__dict__.items() if name not in blueprint.kinds and name not in _OF_EACH_OBJECT}
+    slots = tuple([name for name in blueprint.kinds if name not in inherited])
+    made = type(cls)(cls.__name__, cls.__bases__, {**kept, **_open(members, cls), "__slots__": slots})
     made.__qualname__ = cls.__qualname__
     return made
 
@@ -101,69 +106,75 @@ def _with_slots(cls: Any, own: _OwnFields, members: Mapping[str, _Later | None])
 _OF_EACH_OBJECT = ("__dict__", "__weakref__")
 
 
-def _without_slots(cls: Any, own: _OwnFields, members: Mapping[str, _Later | None]) -> Any:
+def _without_slots(cls: Any, blueprint: _Blueprint, members: Mapping[str, _Later | None]) -> Any:
     """The class, which keeps the defaults as its attributes."""
-    for name, value in own.given.items():
+    for name, value in blueprint.given.items():
         if isinstance(value, Field):
             if value.default is MISSING:
                 delattr(cls, name)
             else:
                 setattr(cls, name, value.default)
-    for name, member in members.items():
+    for name, member in _open(members, cls).items():
         setattr(cls, name, member)
-        if member is not None:
-            member.__set_name__(cls, name)
     return cls
+
+
+def _open(members: Mapping[str, _Later | None], cls: Any) -> Mapping[str, _Later | None]:
+    """Those that a class has not itself; one that has only an `__eq__` of its own has None as its `__hash__` by that."""
+    own = cls.__dict__
+    return {name: each for name, each in members.items() if own.get(name) is None}
 
 
 class _Later:
     """In the place of an attribute of a class until somebody asks for it."""
 
-    __slots__ = ("_make", "_name", "_owner")
+    __slots__ = ("_blueprint", "_make", "_name")
 
-    def __init__(self, make: Callable[[Any], Any]) -> None:
-        self._make = make
-
-    def __set_name__(self, owner: Any, name: str) -> None:
-        self._owner, self._name = owner, name
+    def __init__(self, name: str, make: _Maker, blueprint: _Blueprint) -> None:
+        self._name, self._make, self._blueprint = name, make, blueprint
 
     def __get__(self, instance: object, kind: type | None = None) -> Any:
-        owner, name = self._owner, self._name
+        owner, name = self._blueprint.owner, self._name
         # Another thread may have been faster.
         if owner.__dict__[name] is self:
-            setattr(owner, name, self._make(owner))
+            setattr(owner, name, self._make(self._blueprint))
         made = owner.__dict__[name]
         return made.__get__(instance, kind) if hasattr(made, "__get__") else made
 
 
-def _members(own: _OwnFields, *, slots: bool, frozen: bool, **shown: bool) -> dict[str, _Later | None]:
-    """The attributes of a class that are made later; None where it has none, although another class may have one."""
-    members: dict[str, _Later | None] = {
-        "__dataclass_fields__": _Later(own.in_order),
-        "__dataclass_params__": _Later(lambda _: _parameters(frozen=frozen, **shown)),
-        "__match_args__": _Later(_positional),
-        "__init__": _Later(lambda owner: _constructor(owner, frozen=frozen)),
+#: Makes an attribute.
+_Maker: TypeAlias = Callable[[_Blueprint], Any]
+
+
+@cache
+def _makers(slots: bool, frozen: bool, **shown: bool) -> Mapping[str, _Maker]:
+    """The attributes of classes with some options, and what makes each of them."""
+    makers: dict[str, _Maker] = {
+        "__dataclass_fields__": _Blueprint.in_order,
+        "__dataclass_params__": _parameters,
+        "__match_args__": _positional,
+        "__init__": _constructor,
     }
     if shown.get("repr", True):
-        members["__repr__"] = _Later(_text)
+        makers["__repr__"] = _text
     if shown.get("eq", True):
-        members |= {"__eq__": _Later(_equality), "__hash__": _Later(_hash) if frozen else None}
+        makers |= {"__eq__": _equality} | ({"__hash__": _hash} if frozen else {})
     if shown.get("order"):
-        members |= {name: _Later(partial(_comparison, compare)) for name, compare in _COMPARISONS.items()}
+        makers |= {name: partial(_comparison, compare) for name, compare in _COMPARISONS.items()}
     if frozen:
-        members |= {"__setattr__": _Later(_refusal), "__delattr__": _Later(_refusal_to_delete)}
-        members |= {"__getstate__": _Later(_state), "__setstate__": _Later(_restoration)} if slots else {}
-    return members
+        makers |= {method: partial(_refusal, method, refused) for method, refused in _REFUSALS.items()}
+        makers |= {"__getstate__": _state, "__setstate__": _restoration} if slots else {}
+    return makers
 
 
-def _parameters(**options: bool) -> Any:
+def _parameters(blueprint: _Blueprint) -> Any:
     """The options as `dataclasses` keeps them."""
-    of_python: Any = dataclasses.dataclass(**options)(type("_", (), {"__doc__": "_"}))
+    of_python: Any = dataclasses.dataclass(frozen=blueprint.frozen, **blueprint.shown)(type("_", (), {"__doc__": "_"}))
     return of_python.__dataclass_params__
 
 
-def _positional(owner: Any) -> tuple[str, ...]:
-    return tuple([each.name for each in dataclasses.fields(owner) if each.init and not each.kw_only])
+def _positional(blueprint: _Blueprint) -> tuple[str, ...]:
+    return tuple([each.name for each in dataclasses.fields(blueprint.owner) if each.init and not each.kw_only])
 
 
 @cache
@@ -173,7 +184,8 @@ def _parameters_of(kind: Any) -> tuple[Sequence[str], Callable[[Any], tuple[Any,
     return names, _values(names)
 
 
-def _constructor(owner: Any, *, frozen: bool) -> Any:
+def _constructor(blueprint: _Blueprint) -> Any:
+    owner, frozen = blueprint.owner, blueprint.frozen
     every = [each for each in dataclasses.fields(owner) if each.init]
     given = [each for each in every if not each.kw_only]
     named = [each for each in every if each.kw_only]
@@ -185,8 +197,8 @@ def _constructor(owner: Any, *, frozen: bool) -> Any:
     lines += ["self.__post_init__()"] if hasattr(owner, "__post_init__") else []
     head = ", ".join(["self", *[place for place, each in places.items() if each.init]])
     code = _template(f"def __init__({head}): {'; '.join(lines) or 'pass'}")
-    code = _named(code, {place: each.name for place, each in places.items()})
-    function: Any = FunctionType(code.replace(co_argcount=1 + len(given), co_kwonlyargcount=len(named)), scope)
+    names = {place: each.name for place, each in places.items()}
+    function: Any = FunctionType(_adapted(code, names, len(given), len(named)), scope)
     function.__defaults__ = tuple(_defaults(given).values())
     function.__kwdefaults__ = _defaults(named)
     function.__qualname__ = f"{owner.__qualname__}.__init__"
@@ -203,13 +215,19 @@ def _template(source: str) -> CodeType:
     return code
 
 
-def _named(code: CodeType, names: Mapping[str, str]) -> CodeType:
-    """The code with the names of its parameters and of the attributes that it sets."""
+def _adapted(code: CodeType, names: Mapping[str, str], given: int, named: int) -> CodeType:
+    """The code with the names of its parameters and of the attributes that it sets, some of which are only given by name."""
 
     def own(words: tuple[Any, ...]) -> tuple[Any, ...]:
         return tuple([names.get(each, each) for each in words])
 
-    return code.replace(co_varnames=own(code.co_varnames), co_names=own(code.co_names), co_consts=own(code.co_consts))
+    return code.replace(
+        co_argcount=1 + given,
+        co_kwonlyargcount=named,
+        co_varnames=own(code.co_varnames),
+        co_names=own(code.co_names),
+        co_consts=own(code.co_consts),
+    )
 
 
 def _defaults(parameters: Iterable[Field[Any]]) -> dict[str, Any]:
@@ -249,8 +267,7 @@ def _assignment(one: Field[Any], place: str, scope: dict[str, Any], *, frozen: b
 
 def _setter(one: Field[Any], owner: Any) -> Any:
     """The setter of the slot of a field, which need not look for it by its name; None without a slot."""
-    found = next((each.__dict__[one.name] for each in owner.__mro__ if one.name in each.__dict__), None)
-    return getattr(found, "__set__", None)
+    return getattr(getattr(owner, one.name, None), "__set__", None)
 
 
 def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
@@ -260,8 +277,8 @@ def _values(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
     return lambda each: tuple([getattr(each, name) for name in names])
 
 
-def _text(owner: Any) -> Callable[[Any], str]:
-    names = [each.name for each in dataclasses.fields(owner) if each.repr]
+def _text(blueprint: _Blueprint) -> Callable[[Any], str]:
+    names = [each.name for each in dataclasses.fields(blueprint.owner) if each.repr]
 
     @recursive_repr()
     def text(self: Any) -> str:
@@ -270,8 +287,8 @@ def _text(owner: Any) -> Callable[[Any], str]:
     return text
 
 
-def _equality(owner: Any) -> Callable[[Any, object], Any]:
-    values = _values([each.name for each in dataclasses.fields(owner) if each.compare])
+def _equality(blueprint: _Blueprint) -> Callable[[Any, object], Any]:
+    values = _values([each.name for each in dataclasses.fields(blueprint.owner) if each.compare])
 
     def is_equal(self: Any, other: object) -> Any:
         return values(self) == values(other) if other.__class__ is self.__class__ else NotImplemented
@@ -282,9 +299,9 @@ def _equality(owner: Any) -> Callable[[Any, object], Any]:
 _COMPARISONS = {"__lt__": operator.lt, "__le__": operator.le, "__gt__": operator.gt, "__ge__": operator.ge}
 
 
-def _comparison(compare: Callable[[Any, Any], bool], owner: Any) -> Callable[[Any, object], Any]:
+def _comparison(compare: Callable[[Any, Any], bool], blueprint: _Blueprint) -> Callable[[Any, object], Any]:
     """A method by which objects have the order of their values."""
-    values = _values([each.name for each in dataclasses.fields(owner) if each.compare])
+    values = _values([each.name for each in dataclasses.fields(blueprint.owner) if each.compare])
 
     def compares(self: Any, other: object) -> Any:
         return compare(values(self), values(other)) if other.__class__ is self.__class__ else NotImplemented
@@ -292,8 +309,8 @@ def _comparison(compare: Callable[[Any, Any], bool], owner: Any) -> Callable[[An
     return compares
 
 
-def _hash(owner: Any) -> Callable[[Any], int]:
-    fields_of_owner = dataclasses.fields(owner)
+def _hash(blueprint: _Blueprint) -> Callable[[Any], int]:
+    fields_of_owner = dataclasses.fields(blueprint.owner)
     values = _values([each.name for each in fields_of_owner if (each.compare if each.hash is None else each.hash)])
 
     def hashed(self: Any) -> int:
@@ -302,32 +319,24 @@ def _hash(owner: Any) -> Callable[[Any], int]:
     return hashed
 
 
-def _refusal(owner: Any) -> Callable[[Any, str, object], None]:
-    """The method by which objects cannot be changed."""
-    names = [each.name for each in dataclasses.fields(owner)]
+#: The methods by which objects cannot be changed, and what they refuse to do.
+_REFUSALS = {"__setattr__": "assign to", "__delattr__": "delete"}
 
-    def refuse(self: Any, name: str, value: object) -> None:
+
+def _refusal(method: str, refused: str, blueprint: _Blueprint) -> Callable[..., None]:
+    owner, names = blueprint.owner, [each.name for each in dataclasses.fields(blueprint.owner)]
+
+    def refuse(self: Any, name: str, *value: object) -> None:
         if type(self) is owner or name in names:
-            raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
-        super(owner, self).__setattr__(name, value)
+            raise dataclasses.FrozenInstanceError(f"cannot {refused} field {name!r}")
+        getattr(super(owner, self), method)(name, *value)
 
     return refuse
 
 
-def _refusal_to_delete(owner: Any) -> Callable[[Any, str], None]:
-    names = [each.name for each in dataclasses.fields(owner)]
-
-    def refuse_to_delete(self: Any, name: str) -> None:
-        if type(self) is owner or name in names:
-            raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
-        super(owner, self).__delattr__(name)
-
-    return refuse_to_delete
-
-
-def _state(owner: Any) -> Callable[[Any], list[Any]]:
+def _state(blueprint: _Blueprint) -> Callable[[Any], list[Any]]:
     """The method by which frozen objects with slots are copied and pickled, together with the next one."""
-    names = [each.name for each in dataclasses.fields(owner)]
+    names = [each.name for each in dataclasses.fields(blueprint.owner)]
 
     def state(self: Any) -> list[Any]:
         return [getattr(self, name) for name in names]
@@ -335,8 +344,8 @@ def _state(owner: Any) -> Callable[[Any], list[Any]]:
     return state
 
 
-def _restoration(owner: Any) -> Callable[[Any, Sequence[Any]], None]:
-    names = [each.name for each in dataclasses.fields(owner)]
+def _restoration(blueprint: _Blueprint) -> Callable[[Any, Sequence[Any]], None]:
+    names = [each.name for each in dataclasses.fields(blueprint.owner)]
 
     def restore(self: Any, state: Sequence[Any]) -> None:
         for name, value in zip(names, state, strict=True):

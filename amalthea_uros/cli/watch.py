@@ -31,7 +31,7 @@ _OPTION = "--watch"
 _INTERVAL = 0.2
 
 #: A file that a description names. It is looked for as text, because it shall be found also while the rest is being edited.
-_NAMED = re.compile(rb""":[ \t]*["']?([^\s"',}#]+\.(?:ya?ml|dbc))\b""")
+_NAMED = rb""":[ \t]*["']?([^\s"',}#]+\.(?:ya?ml|dbc))\b"""
 
 #: What shows that a file changed, None for one that does not exist.
 State = Mapping[Path, tuple[int, int, int] | None]
@@ -119,7 +119,7 @@ def _with_named(waiting: list[Path]) -> Iterable[Path]:
         known[place] = path
         if is_description(path):
             with suppress(FileError):
-                named = _NAMED.findall(read_bytes(path, DESCRIPTION_SIZE))
+                named = re.findall(_NAMED, read_bytes(path, DESCRIPTION_SIZE))
                 waiting += [path.parent / name.decode(errors="replace") for name in named]
     return known.values()
 

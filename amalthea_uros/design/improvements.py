@@ -18,7 +18,7 @@ from amalthea_uros.analyze.results.processes import ProcessorResult
 from amalthea_uros.analyze.system import analyze_while
 from amalthea_uros.design.changes.apply import Difference, apply, describe
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.description.edit import edit_description
+from amalthea_uros.design.description.edit import DescriptionEditor
 from amalthea_uros.design.description.origin import DescriptionOrigin
 from amalthea_uros.design.improving_changes import ImprovingChange, candidates
 from amalthea_uros.errors import InvalidArgumentError
@@ -187,6 +187,7 @@ class Trial:
     known : what the analyses found; changes without an effect, or with that of another one, are analysed once
     work : of the combinations of phases that were analysed
     refused : number of changed systems that were not analysed because of the work of those before
+    editor : of the description; None for other systems
     """
 
     analysis: Analysis
@@ -198,9 +199,11 @@ class Trial:
     known: list[tuple[Configuration, Improvement | None]] = field(default_factory=list)
     work: int = 0
     refused: int = 0
+    editor: DescriptionEditor | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
         self.known.append((self.present, None))
+        self.editor = None if self.source is None else DescriptionEditor(self.source.text, self.source.path)
 
     def prepared(self, candidate: ImprovingChange) -> Iterator[tuple[ImprovingChange, Configuration]]:
         """A candidate with its changed system; nothing if it is impossible, or changes how often messages come."""
@@ -218,9 +221,9 @@ class Trial:
 
     def _in_description(self, candidate: ImprovingChange) -> ImprovingChange:
         """A candidate with what a description states for it, if there is one; InvalidArgumentError if it states nothing."""
-        if self.source is None or not candidate.changes:
+        if self.source is None or self.editor is None or not candidate.changes:
             return candidate
-        edited = edit_description(self.source.text, self.source.path, candidate.changes)
+        edited = self.editor.edited(candidate.changes)
         return replace(candidate, changes=self.source.changes_of(edited.assignments), is_stated=True)
 
     def tried(self, candidate: ImprovingChange, changed: Configuration, limit: Time | None) -> Improvement | None:

@@ -12,7 +12,7 @@ from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.apply import Difference
 from amalthea_uros.design.changes.change import Change
 from amalthea_uros.design.changes.key import Configuration
-from amalthea_uros.design.description.edit import edit_description
+from amalthea_uros.design.description.edit import DescriptionEditor
 from amalthea_uros.design.description.origin import ASSUMED, DescriptionOrigin
 from amalthea_uros.design.model_attributes.origin import ModelOrigin
 from amalthea_uros.design.optimize.choices import Wishes, design_space
@@ -203,5 +203,5 @@ def _in_description(designs: Designs, candidate: Candidate, source: DescriptionO
     stated = designs.described_changes(own)
     assumed = tuple(change for change in values if change.key in ASSUMED)
     others = tuple(change for change in designs.built(own).value_changes(values) if change not in assumed)
-    edited = edit_description(source.edited(stated), source.path, others)
+    edited = DescriptionEditor(source.edited(stated), source.path).edited(others)
     return (*stated, *source.changes_of((*edited.assignments, *edited.kept)), *assumed)

@@ -15,8 +15,8 @@ from amalthea_uros.spec.values import editor_schema, problem, unexpected
 #: More are no exception; each takes a place in the memory of a simulation.
 _MOST = 1000
 _BILLION = 10**9
-_COUNT = re.compile(r"\s*(\d{1,9})\s+per\s+(\S.*?)\s*", re.ASCII)
-_SHARE = re.compile(r"\s*(\d{1,3}(?:\.\d{1,9})?)\s*%\s*", re.ASCII)
+_COUNT = r"(?a)\s*(\d{1,9})\s+per\s+(\S.*?)\s*"
+_SHARE = r"(?a)\s*(\d{1,3}(?:\.\d{1,9})?)\s*%\s*"
 _EXPECTED = "expected a number in a time such as '1 per 10 s', or a probability of each message such as '0.1 %'"
 
 
@@ -42,7 +42,7 @@ class LossRate:
 
 def _loss_rate(value: Any) -> LossRate:
     text = value if isinstance(value, str) else ""
-    if counted := _COUNT.fullmatch(text):
+    if counted := re.fullmatch(_COUNT, text):
         try:
             window = units.parse_time(counted[2])
         except ValueError as error:
@@ -50,7 +50,7 @@ def _loss_rate(value: Any) -> LossRate:
         if not 1 <= int(counted[1]) <= _MOST or window <= 0:
             raise unexpected(f"expected 1 to {_MOST:,} messages in a time above zero")
         return LossRate(count=int(counted[1]), window=window)
-    if stated := _SHARE.fullmatch(text):
+    if stated := re.fullmatch(_SHARE, text):
         share = Fraction(stated[1]) * _BILLION / 100
         if not 1 <= share < _BILLION:
             raise unexpected("expected a probability above 0 % and below 100 %")

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
-from amalthea_uros._internal.message_types import Length, LengthBounds, MessageType, length_of, unbounded_parts
 from amalthea_uros.spec.fields import After
 from amalthea_uros.spec.section import DescriptionSection
 from amalthea_uros.spec.values import Count, editor_schema, problem, unexpected
 from amalthea_uros.units import parse_data_size
+
+if TYPE_CHECKING:
+    from amalthea_uros._internal.message_types import Length, LengthBounds
 
 _TYPE = re.compile(r"[a-z]\w*/(msg|srv|action)/[A-Z]\w*", re.ASCII)
 _EXAMPLE = "std_msgs/msg/Int32"
@@ -63,6 +65,8 @@ class TypedMessage(DescriptionSection):
         kind = value.get("type") if isinstance(value, dict) else None
         if not isinstance(kind, str) or _TYPE.fullmatch(kind) is None:
             return value
+        from amalthea_uros._internal.message_types import LengthBounds
+
         given = value.get("bounds")
         stated = given if isinstance(given, dict) else {}
         # What is no number is reported where it is.
@@ -82,6 +86,8 @@ def _count(value: Any) -> int:
 
 def _size(kind: str, part: str, stated: Any, bounds: LengthBounds) -> str | None:
     """The size that follows from a type; None if it is stated, or the type is not known."""
+    from amalthea_uros._internal.message_types import MessageType, length_of, unbounded_parts
+
     whole = MessageType(*kind.split("/"))
     own = whole.part(part) if part else whole
     length = length_of(own, bounds=bounds)

@@ -311,6 +311,9 @@ class TimingContext:
     def _find_demands(self) -> None:
         model = self.demand_model
         for name, scheduled in self.scheduled.items():
+            if (same := self._same_demand(scheduled)) is not None:
+                self.demands[name] = same
+                continue
             try:
                 # Its scheduler decides about it, whatever its jobs do.
                 if (scheduler := self.deciding(name, scheduled.core)) is not None:
@@ -320,9 +323,7 @@ class TimingContext:
                 if reason := why_suspended(name, self.system, self.dataflow):
                     raise UnknownError(reason)
                 waits = awaited_events(scheduled.process, self.activations)
-                demand = self._same_demand(scheduled) or (self.executing if waits else model).of_process(
-                    scheduled.process, scheduled.core
-                )
+                demand = (self.executing if waits else model).of_process(scheduled.process, scheduled.core)
                 if not states_execution_time(scheduled.process, self.system):
                     raise UnknownError("it has no execution time, and neither have the runnables that it calls")
                 if name in self.decisions:

@@ -7,7 +7,7 @@ import pytest
 from support import ROOT
 
 from amalthea_uros import InvalidArgumentError, LatencyQuantity, analyze, parse_change
-from amalthea_uros.design.description.edit import edit_description
+from amalthea_uros.design.description.edit import DescriptionEditor
 from amalthea_uros.design.description.text_edits import newline_of, value_text, with_comment, with_value
 from amalthea_uros.units import MICROSECOND
 from amalthea_uros.uros.described import describe_text
@@ -18,7 +18,7 @@ DRIVE = (ROOT / "samples" / "drive-and-lift.yaml").read_text()
 
 
 def edited(text, *changes):
-    return edit_description(text, Path("app.yaml"), [parse_change(change) for change in changes])
+    return DescriptionEditor(text, Path("app.yaml")).edited([parse_change(change) for change in changes])
 
 
 def changed_lines(before, after):

@@ -18,7 +18,7 @@ FORM, EXAMPLE = "OBJECT.KEY=VALUE", "Executor_Task.period=2ms"
 
 #: The first equals sign after a key; one before it belongs to the name of the object.
 _QUANTITY = re.compile(r"[\d.]+ [^\W\d]+")
-_ASSIGNMENT = re.compile(r"(.*?\.\s*\w+\s*)=(.*)", re.DOTALL)
+_ASSIGNMENT = r"(?s)(.*?\.\s*\w+\s*)=(.*)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ def parse_change(text: str) -> Change:
 
 def split_assignment(text: str, form: str, example: str) -> tuple[str, str]:
     """What is before and after the equals sign; raises as `parse_change`."""
-    match = _ASSIGNMENT.fullmatch(text)
+    match = re.fullmatch(_ASSIGNMENT, text)
     target, value = (part.strip() for part in (match.groups() if match else text.partition("=")[::2]))
     if not target or not value:
         raise InvalidArgumentError(f"{text!r} is not of the form {form}; an example: {example}")
@@ -106,9 +106,9 @@ SWEEP_FORM, SWEEP_EXAMPLE = "OBJECT.KEY=FROM..TO/STEP or OBJECT.KEY=A,B,C", "Exe
 #: More variants than this are a mistake rather than a plan.
 MAX_VARIANTS = 1_000_000
 
-_RANGE = re.compile(r"(?P<start>[^/]+?)\s*\.\.\s*(?P<stop>[^/]+?)\s*/\s*(?P<step>[^/]+)")
-_NUMBER = re.compile(r"([+-]?\d+)(?:\s*(ticks?))?", re.ASCII)
-_UNIT = re.compile(r"[^\d\s]+$")
+_RANGE = r"(?P<start>[^/]+?)\s*\.\.\s*(?P<stop>[^/]+?)\s*/\s*(?P<step>[^/]+)"
+_NUMBER = r"(?a)([+-]?\d+)(?:\s*(ticks?))?"
+_UNIT = r"[^\d\s]+$"
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,7 +174,7 @@ def parse_sweep(text: str) -> Sweep:
     """
     target, values = split_assignment(text, SWEEP_FORM, SWEEP_EXAMPLE)
     name, key = split_target(target, text, SWEEP_FORM, SWEEP_EXAMPLE, needs_object=False)
-    if match := _RANGE.fullmatch(values):
+    if match := re.fullmatch(_RANGE, values):
         return Sweep(name, key, _steps(text, **match.groupdict()))
     if ".." in values and "," not in values:
         raise InvalidArgumentError(f"{text!r} has no step; expected {SWEEP_FORM}, e.g. {SWEEP_EXAMPLE}")
@@ -268,10 +268,10 @@ def _steps(text: str, start: str, stop: str, step: str) -> Sequence[str]:
 
 def _amount(text: str) -> _Amount:
     """A whole number, ticks, or a quantity with a unit; ValueError for anything else."""
-    if match := _NUMBER.fullmatch(text):
+    if match := re.fullmatch(_NUMBER, text):
         unit = "ticks" if match[2] else ""
         return _Amount(Fraction(match[1]), unit, unit, 1)
-    found = _UNIT.search(text)
+    found = re.search(_UNIT, text)
     unit = found[0] if found else ""
     dimension = FREQUENCY if unit in FREQUENCY.units else TIME
     value = parse(text, dimension)

@@ -28,8 +28,9 @@ K = TypeVar("K", bound=NamedKey)
 
 def with_gaps(target: str, keys: Iterable[K]) -> list[tuple[int, K]]:
     """The keys that are meant by some of their names, with the number of names left out; those in the same case, if there are any."""
-    every = list(keys)
-    matches = [(gap, key) for key in every if (gap := _gap(target, key.names)) is not None]
+    every, end = list(keys), target.rpartition(".")[2]
+    # Most keys end otherwise; a name can have dots itself.
+    matches = [(gap, key) for key in every if key.names[-1].endswith(end) and (gap := _gap(target, key.names)) is not None]
     if matches:
         return matches
     folded = target.casefold()

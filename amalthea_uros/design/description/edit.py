@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TypeAlias
 
@@ -103,39 +104,50 @@ class EditedDescription:
     kept: tuple[Assignment, ...]
 
 
-def edit_description(text: str, path: Path = TEXT, changes: Sequence[Change] = ()) -> EditedDescription:
-    """The text of a description with changes.
+@dataclass(frozen=True)
+class DescriptionEditor:
+    """Edits the text of a description.
 
-    The edited text is read again, and must describe the system that the changes make of the present one. Where values that the
-    description leaves open would follow the changes, such as priorities by rate, they are written, too.
-
-    Parameters
+    Attributes
     ----------
     text : with the line ends of the file
     path : the file of the text, for findings, and for the files that it names
-
-    Raises
-    ------
-    ReadError : something in the text is wrong.
-    InvalidArgumentError : a change cannot be stated in a description, or would have other effects than stated.
     """
-    before = describe_text(text, path)
-    expected = changed_system(before.assembly.system, changes, Settings())
-    built = BuiltObjects(before, text)
-    assignments = [assignment for change in changes for assignment in built.assignments(change)]
-    consequences: list[Assignment] = []
-    while True:
-        edited = apply_assignments(text, [*assignments, *consequences])
-        found = edited_assembly(edited, path, changes).system
-        pinned = {assignment.target for assignment in (*assignments, *consequences)}
-        different = differences(meaning(expected), meaning(found))
-        if not different:
-            break
-        more = [change for change in _pins(different, expected, found) if change.target not in pinned]
-        if not more:
-            raise InvalidArgumentError(_other_effect(changes, different, before.assembly.system, expected))
-        consequences += [assignment for change in more for assignment in built.assignments(change)]
-    return EditedDescription(text=edited, assignments=tuple(assignments), kept=tuple(consequences))
+
+    text: str
+    path: Path = TEXT
+
+    @cached_property
+    def _built(self) -> BuiltObjects:
+        return BuiltObjects(describe_text(self.text, self.path), self.text)
+
+    def edited(self, changes: Sequence[Change]) -> EditedDescription:
+        """The text with changes.
+
+        The edited text is read again, and must describe the system that the changes make of the present one. Where values that the
+        description leaves open would follow the changes, such as priorities by rate, they are written, too.
+
+        Raises
+        ------
+        ReadError : something in the text is wrong.
+        InvalidArgumentError : a change cannot be stated in a description, or would have other effects than stated.
+        """
+        before = self._built.values.assembly.system
+        expected = changed_system(before, changes, Settings())
+        assignments = [assignment for change in changes for assignment in self._built.assignments(change)]
+        consequences: list[Assignment] = []
+        while True:
+            edited = apply_assignments(self.text, [*assignments, *consequences])
+            found = edited_assembly(edited, self.path, changes).system
+            pinned = {assignment.target for assignment in (*assignments, *consequences)}
+            different = differences(meaning(expected), meaning(found))
+            if not different:
+                break
+            more = [change for change in _pins(different, expected, found) if change.target not in pinned]
+            if not more:
+                raise InvalidArgumentError(_other_effect(changes, different, before, expected))
+            consequences += [assignment for change in more for assignment in self._built.assignments(change)]
+        return EditedDescription(text=edited, assignments=tuple(assignments), kept=tuple(consequences))
 
 
 def _pins(different: Iterable[tuple[str, str]], expected: System, found: System) -> Iterable[Change]:

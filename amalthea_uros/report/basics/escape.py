@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-#: Control and format characters, surrogates, and what XML 1.0 does not allow (section 2.2).
-_HIDDEN = re.compile(
+#: Control and format characters, surrogates, and what XML 1.0 does not allow (section 2.2), none of which is printable.
+_HIDDEN = (
     "[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u2069\ud800-\udfff\ufeff\ufff9-\ufffb\ufffe\uffff"
     "\U000e0000-\U000e007f]"
 )
@@ -32,14 +32,13 @@ def visible(text: str) -> str:
     >>> visible("a\nb\x1b[31m\u202e")
     'a\\nb\\x1b[31m\\u202e'
     """
-    return text if text.isascii() and text.isprintable() else _HIDDEN.sub(_escape, text)
+    return text if text.isprintable() else re.sub(_HIDDEN, _escape, text)
 
 
 def visible_cells(cells: Iterable[str]) -> list[str]:
     """The visible texts of a row; most rows have nothing to hide, which is sooner known of all their cells together."""
     row = list(cells)
-    whole = "".join(row)
-    return row if whole.isascii() and whole.isprintable() else list(map(visible, row))
+    return row if "".join(row).isprintable() else list(map(visible, row))
 
 
 def message_line(text: str) -> str:
@@ -61,7 +60,7 @@ def visible_json(text: str) -> str:
     """JSON of several lines without hidden characters: they are escapes of JSON."""
     if text.isascii() and "\x7f" not in text:  # the other ones of ASCII are escapes already
         return text
-    return "\n".join(_HIDDEN.sub(_json_escape, line) for line in text.split("\n"))
+    return "\n".join(re.sub(_HIDDEN, _json_escape, line) for line in text.split("\n"))
 
 
 def _escape(match: re.Match[str]) -> str:

@@ -41,9 +41,9 @@ def _remedy(core: ProcessorResult, load: Fraction) -> str:
     return f"The processes need at least {load_text(load, Rounding.DOWN)} of the core: it takes {relief(core)}."
 
 
-_REPEATED = re.compile(r"overload: tasks at this priority or higher need [\d.,]+ % of the core\b")
+_REPEATED = r"overload: tasks at this priority or higher need [\d.,]+ % of the core\b"
 
 
 def brief(reason: str, analysis: Analysis) -> str:
     """A reason without what the shares of an overloaded core show in more detail."""
-    return _REPEATED.sub("overload", reason) if any(core.is_overloaded for core in analysis.processors) else reason
+    return re.sub(_REPEATED, "overload", reason) if any(core.is_overloaded for core in analysis.processors) else reason

@@ -49,7 +49,7 @@ PERIOD = ("period", "replenishment")
 #: The parameter of round robin.
 TIME_SLICE = "timeSliceLength"
 #: Time slices as text, which models until 1.2 have beside the parameters of a policy of their own.
-_SLICE_AS_TEXT = re.compile(r"(extended: )?timeslice(length)?(_.+)?", re.IGNORECASE)
+_SLICE_AS_TEXT = r"(?i)(extended: )?timeslice(length)?(_.+)?"
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,7 +379,7 @@ class SchedulingOrder:
 def _slice(scheduler: Scheduler, parameters: Sequence[Parameter]) -> Time | None:
     """The time slice of a task; None if none is stated, or several."""
     stated = _time(_of(scheduler, parameters, TIME_SLICE))
-    texts = [value for each in parameters if _SLICE_AS_TEXT.fullmatch(each.name) for value in each.values]
+    texts = [value for each in parameters if re.fullmatch(_SLICE_AS_TEXT, each.name) for value in each.values]
     if stated is None and len(texts) == 1 and isinstance(texts[0], str):
         with suppress(ValueError):
             return parse_duration(texts[0])

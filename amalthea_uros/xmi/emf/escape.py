@@ -12,7 +12,7 @@ _ESCAPES = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#x9;", "\n": "&#xA
 WHITE_SPACE = " \t\r\n"
 
 #: Characters that XML 1.0 does not allow, not even escaped.
-_IMPOSSIBLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+_IMPOSSIBLE = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 _REFERENCE = re.compile(r"&(?:#x([0-9a-fA-F]+)|#([0-9]+)|(amp|lt|gt|quot|apos));|(\r\n|[\t\n\r])")
 _ENTITIES = {"amp": "&", "lt": "<", "gt": ">", "quot": '"', "apos": "'"}
@@ -32,7 +32,8 @@ def escape_text(value: str) -> str:
 
 def impossible_character(value: str) -> str | None:
     """The first character that XML does not allow, None if there is none."""
-    found = _IMPOSSIBLE.search(value)
+    # None of them is printable.
+    found = None if value.isprintable() else re.search(_IMPOSSIBLE, value)
     return found[0] if found else None
 
 
