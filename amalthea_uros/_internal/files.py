@@ -306,6 +306,22 @@ def decode(data: bytes, encoding: str) -> str:
     return text
 
 
+def check_utf8(data: bytes) -> None:
+    """Check that bytes are text in UTF-8: in pieces, because memory for the whole text takes longer than the check.
+
+    Raises
+    ------
+    UnicodeError : they are not.
+    """
+    decoder, view = codecs.getincrementaldecoder("utf-8")(), memoryview(data)
+    try:
+        for at in range(0, len(data), _BLOCK):
+            decoder.decode(view[at : at + _BLOCK])
+        decoder.decode(b"", final=True)
+    except UnicodeError:
+        data.decode()  # the position in all of them
+
+
 def encode(text: str, encoding: str, errors: str = "strict") -> bytes:
     """The bytes of a text, with a byte order mark where the codec stands for one; `errors` as for `str.encode`."""
     return (_MARK + text if encoding in _UNMARKED else text).encode(encoding, errors)

@@ -106,12 +106,14 @@ def _read_text(path: Path, max_size: int) -> FileText:
         entry, data = unpacked(path, data, max_size)
     encoding = files.marked_encoding(data) or _declared_encoding(data)
     try:
-        text = data if encoding == "utf-8" and data.isascii() else files.decode(data, encoding)
+        text = files.decode(data, encoding) if encoding != "utf-8" else data
+        if text is data and not data.isascii():
+            files.check_utf8(data)
     except (UnicodeError, LookupError) as error:
         advice = "AMALTHEA models are XML files in UTF-8, plain or zipped."
         reason = f"not XML: the content is not valid {encoding} text ({error})"
         raise FileError(path, reason, advice, FileFlaw.ENCODING) from None
-    content = FileText(data if encoding == "utf-8" else text, encoding, entry)
+    content = FileText(text, encoding, entry)
     utf8 = content.utf8
     if not utf8 or utf8.isspace():
         raise FileError(path, "the file is empty", "Check that it was written completely.")

@@ -22,7 +22,7 @@ def connect(
     utf8: bytes,
     *,
     start: Callable[[str, dict[str, str]], None],
-    end: Callable[[str], object],
+    end: Callable[[str], None],
     characters: Callable[[str], None],
     comment: Callable[[str], None],
     processing_instruction: Callable[[str, str], None],

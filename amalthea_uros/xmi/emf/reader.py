@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 from xml.parsers import expat
@@ -35,7 +35,7 @@ _append = list.append
 _new_list = list.__new__
 
 StartHandler = Callable[[str, dict[str, str]], None]
-EndHandler = Callable[[str], object]
+EndHandler = Callable[[str], None]
 
 
 #: References to be resolved when all documents are read, by feature: the objects that refer. Until then the instance dictionary of such
@@ -137,9 +137,7 @@ class _ModelReader:
         self.skipped_depth = 0
         self.skipped_start = 0
         self.start_part: StartHandler | None = None
-        # Closes the innermost element without a function of Python, which would run once per element: `next` takes the name of the
-        # tag as the value at the end of the iterator, which it never reaches.
-        self.end_part: EndHandler = partial(next, iter(self.stack.pop, None))
+        self.end_part: EndHandler = self.end_handler()
         self.collector = FindingCollector()
 
     def read(self) -> ReadResult:
@@ -282,6 +280,15 @@ class _ModelReader:
                 raise self.too_deep()
 
         return start
+
+    def end_handler(self) -> EndHandler:
+        """The handler of end tags as long as no content has to be kept."""
+        close = self.stack.pop
+
+        def end(_name: str) -> None:
+            close()
+
+        return end
 
     def end_with_extras(self, _name: str) -> None:
         """The handler of end tags in a file with content that has to be kept."""
