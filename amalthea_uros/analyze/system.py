@@ -81,7 +81,7 @@ def _of_all_phases(
 ) -> tuple[Analysis | None, bool]:
     """The analysis over all combinations of unknown phases, None if there are too many; and whether all that was found is wanted."""
     cases, budget = PhaseCases.of(solution, unknown), JobBudget()
-    if cases is None:
+    if cases is None or not cases.are_few(cases.of_everything()):
         return None, True
     analyses: dict[int, Analysis] = {}
     # Loads are those of whole cycles, whatever the phases.

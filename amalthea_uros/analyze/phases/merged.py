@@ -114,9 +114,8 @@ def _over_all(method: str, counts: Sequence[int]) -> str:
 def over_all_phases(chain: EventChain, evaluation: ChainEvaluator) -> ChainResult:
     """The result of a chain, over all unknown phases of the jobs that it passes if these are not too many."""
     cases = PhaseCases.of(evaluation.solution, evaluation.occurrences(chain))
-    if cases is None:
+    if cases is None or not cases.are_few(of_chain := cases.of_chain(chain)):
         return evaluation.chain(chain)
-    of_chain = cases.of_chain(chain)
     results = []
     for _, solution in cases.solutions(of_chain):
         results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
