@@ -18,6 +18,7 @@ bound of the paper for chains.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.busy_window import Interference
@@ -71,8 +72,12 @@ class _BusyWindow:
         if length is None or task.events.eta_plus(length) > max_jobs(task):
             reason = "its busy window is too long: the callbacks need nearly all of the core"
             return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
-        end, worst, jobs = 0, 0, task.events.eta_plus(length)
+        end, worst, jobs = 0, 0, 0
         for after in releases(task, length):
+            # All of them end within the busy window, except that jobs that take no time can wait for those released at its end.
+            if task.demand.worst and length - after <= worst:
+                break
+            jobs += 1
             reached = self._end(task, after, end)
             if reached is None:
                 reason = "its busy window does not end"
@@ -104,6 +109,6 @@ class _BusyWindow:
 
 
 def releases(task: AnalysedTask, window: Time) -> Iterator[Time]:
-    """The earliest release of each job in a busy window; of jobs that can be released together, that of the last one counts."""
-    for job in range(1, task.events.eta_plus(window) + 1):
-        yield task.events.delta_min(job)
+    """The earliest releases of the jobs in a busy window, each once: of jobs that can be released together, the last one counts."""
+    every = map(task.events.delta_min, range(1, task.events.eta_plus(window) + 1))
+    return (release for release, _ in groupby(every))

@@ -5,6 +5,9 @@ from support import ROOT
 
 import amalthea_uros as amuros
 from amalthea_uros.analyze.host import polled
+from amalthea_uros.analyze.response_times.task import AnalysedTask
+from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.event_models.models import SporadicEvents
 
 ROBOT = (ROOT / "samples" / "robot-with-host.yaml").read_text()
 IMAGES = "{topic: image, rate: 20 Hz, jitter: 5 ms}"
@@ -23,3 +26,15 @@ def test_the_steps_grow_with_the_jobs(seconds, monkeypatch):
     assert IMAGES in ROBOT
     amuros.analyze(ROBOT.replace(IMAGES, f"{{topic: image, rate: 20 Hz, jitter: {seconds} s}}"))
     assert 0 < len(steps) < 40_000 * seconds
+
+
+def test_jobs_that_cannot_take_longer_are_not_examined(monkeypatch):
+    """A burst of 101 jobs, then one every 10: those of the burst count once, those near the end of the busy window not at all."""
+    burst = AnalysedTask(name="burst", events=SporadicEvents(10, 1000), demand=MultiframeDemand.constant(5, 5))
+    examined, one = [], polled._BusyWindow._end
+    monkeypatch.setattr(polled._BusyWindow, "_end", lambda *given: examined.append(given) or one(*given))
+    response = polled.response_times([burst])["burst"]
+    jobs = range(1, burst.events.eta_plus(1000) + 1)
+    assert response.worst == max(5 * job - burst.events.delta_min(job) for job in jobs) == 505
+    # The busy window is 1005 long, so that what is released from 500 on takes no longer than 505.
+    assert response.jobs == len(examined) == 500 // 10
