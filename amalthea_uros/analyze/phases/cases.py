@@ -52,11 +52,7 @@ def work_of(solution: Solution) -> int:
     activities = (reached(process.activities, sizes) for process in processes)
     # Of processes with more activities, these are not followed one by one.
     followed = sum(each for each in activities if each <= MAX_POSITIONS)
-    return _jobs_of(solution) + len(processes) * _JOBS_PER_PROCESS + followed
-
-
-def _jobs_of(solution: Solution) -> int:
-    return sum(response.jobs for response in solution.responses.values())
+    return solution.jobs + len(processes) * _JOBS_PER_PROCESS + followed
 
 
 @dataclass(frozen=True)
@@ -83,7 +79,7 @@ class PhaseCases:
         combinations = list(phase_combinations(unknown))
         first = _solution(solution.context, combinations[0])
         # All of them are compared, before it is known how many of them are solved.
-        if count * _jobs_of(first) > MAX_JOBS:
+        if count * first.jobs > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
 

@@ -66,6 +66,7 @@ def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Soluti
         requirements=Results(_requirements(list(analyses.values()))),
         assumptions=_each_once(analyses.values(), lambda analysis: analysis.assumptions),
         findings=_each_once(analyses.values(), lambda analysis: analysis.findings),
+        work=sum(analysis.work for analysis in analyses.values()),
     )
 
 

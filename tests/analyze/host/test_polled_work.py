@@ -28,6 +28,13 @@ def test_the_steps_grow_with_the_jobs(seconds, monkeypatch):
     assert 0 < len(steps) < 40_000 * seconds
 
 
+def test_the_examined_jobs_are_work(monkeypatch):
+    examined, one = [], polled._BusyWindow._end
+    monkeypatch.setattr(polled._BusyWindow, "_end", lambda *given: examined.append(given) or one(*given))
+    analysis = amuros.analyze(ROBOT.replace(IMAGES, "{topic: image, rate: 20 Hz, jitter: 1 s}"))
+    assert 1_000 < len(examined) <= analysis.work < 2 * len(examined)
+
+
 def test_jobs_that_cannot_take_longer_are_not_examined(monkeypatch):
     """A burst of 101 jobs, then one every 10: those of the burst count once, those near the end of the busy window not at all."""
     burst = AnalysedTask(name="burst", events=SporadicEvents(10, 1000), demand=MultiframeDemand.constant(5, 5))
