@@ -78,6 +78,8 @@ class _BusyWindow:
             if task.demand.worst and length - after <= worst:
                 break
             jobs += 1
+            if worst and self._served(task, after, after + worst) <= after + worst:
+                continue
             reached = self._end(task, after, end)
             if reached is None:
                 reason = "its busy window does not end"
@@ -92,16 +94,21 @@ class _BusyWindow:
         ----------
         before : the end of an earlier job, which is not later, as the demand up to each moment is not greater
         """
-        own, last = task.demand.max_demand(task.events.eta_plus(after + 1)), task.demand.worst
         end = max(after + 1, before)
         for _ in range(MAX_STEPS):
-            reached = self.supply.time_for(own + self._of_others(task, end - last + 1) + self.higher.in_window(end))
+            reached = self._served(task, after, end)
             if reached <= end:
                 return end
             if reached > LIMIT:
                 return None
             end = reached
         return None
+
+    def _served(self, task: AnalysedTask, after: Time, end: Time) -> Time:
+        """When the last job that is released up to `after` has ended, with everything before it, unless it ends before `end`."""
+        own = task.demand.max_demand(task.events.eta_plus(after + 1))
+        others = self._of_others(task, end - task.demand.worst + 1)
+        return self.supply.time_for(own + others + self.higher.in_window(end))
 
     def _of_others(self, task: AnalysedTask, window: Time) -> Time:
         """The demand of the other callbacks in a window, from that of all, so that all callbacks share one interference."""
