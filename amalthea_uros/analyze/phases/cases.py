@@ -41,18 +41,23 @@ from amalthea_uros.units import Time
 Cases: TypeAlias = Mapping[int, int]
 #: With more combinations of phases, or more work of all that are solved, any job can be the one that takes what comes from outside.
 MAX_COMBINATIONS = 1000
-MAX_JOBS = 350_000
-#: A solution, with what is evaluated of it, takes as long for a process as for so many jobs, and for an activity as for one.
-_JOBS_PER_PROCESS = 100
+MAX_JOBS = 400_000
+#: A solution, with what is evaluated of it, takes as long for a process or a chain as for so many jobs, and for an activity as for one.
+_JOBS_PER_PROCESS, _JOBS_PER_CHAIN = 100, 50
 
 
-def work_of(solution: Solution) -> int:
-    """The work of a solution and of what is evaluated of it, in jobs: also processes without response times are looked through."""
+def work_of(solution: Solution, chains: int) -> int:
+    """The work of a solution and of what is evaluated of it, in jobs: also processes without response times are looked through.
+
+    Parameters
+    ----------
+    chains : number of those that are evaluated
+    """
     processes, sizes = solution.context.system.processes.values(), solution.context.dataflow.events.sites.sizes
     activities = (reached(process.activities, sizes) for process in processes)
     # Of processes with more activities, these are not followed one by one.
     followed = sum(each for each in activities if each <= MAX_POSITIONS)
-    return solution.jobs + len(processes) * _JOBS_PER_PROCESS + followed
+    return solution.jobs + len(processes) * _JOBS_PER_PROCESS + chains * _JOBS_PER_CHAIN + followed
 
 
 @dataclass(frozen=True)
@@ -82,15 +87,6 @@ class PhaseCases:
         if count * first.jobs > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
-
-    @cached_property
-    def work_of_each(self) -> int:
-        """The work of each combination, in jobs."""
-        return work_of(self.first)
-
-    def are_few(self, cases: Cases) -> bool:
-        """Whether the solutions of some cases do not take too much work."""
-        return len(cases) * self.work_of_each <= MAX_JOBS
 
     def solutions(self, cases: Cases) -> Iterator[tuple[int, Solution]]:
         """The numbers of the combinations of some cases, and their solutions."""
