@@ -101,4 +101,4 @@ def test_the_work_of_the_analyses_ends_a_search_with_what_was_found(designs, mon
     found = search(plan.problem, Effort(designs=500, is_complete=True))
     assert found.tried == designs
     assert found.conclusion is Conclusion.BEST_FOUND
-    assert found.ended == f"the analysis of {counted(designs, 'design')} took as much work as 500 designs may take"
+    assert found.ended == f"judging {counted(designs, 'design')} took as much work as 500 designs may take"

@@ -127,7 +127,7 @@ class Recorder:
             raise EndedError(reason)
         if self.work >= self.effort.designs * WORK_PER_DESIGN:
             judged, allowed = counted(len(self.found), "design"), counted(self.effort.designs, "design")
-            raise EndedError(f"the analysis of {judged} took as much work as {allowed} may take")
+            raise EndedError(f"judging {judged} took as much work as {allowed} may take")
 
 
 #: Designs are judged in groups of this size, whatever judges them, so that a search ends after the same design everywhere.
