@@ -21,7 +21,7 @@ LINES = {
     "_internal": 1206,
     "_version": 1,
     "am": 2,
-    "analyze": 9329,
+    "analyze": 9331,
     "bridge": 2950,
     "cli": 2607,
     "compare": 3841,

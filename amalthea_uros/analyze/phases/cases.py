@@ -47,7 +47,7 @@ _JOBS_PER_PROCESS, _JOBS_PER_CHAIN = 100, 50
 
 
 def work_of(solution: Solution, chains: int) -> int:
-    """The work of a solution and of what is evaluated of it, in jobs: also processes without response times are looked through.
+    """The work of a solution and of what is evaluated of it, in jobs.
 
     Parameters
     ----------
@@ -57,7 +57,12 @@ def work_of(solution: Solution, chains: int) -> int:
     activities = (reached(process.activities, sizes) for process in processes)
     # Of processes with more activities, these are not followed one by one.
     followed = sum(each for each in activities if each <= MAX_POSITIONS)
-    return solution.jobs + len(processes) * _JOBS_PER_PROCESS + chains * _JOBS_PER_CHAIN + followed
+    return _work_of_processes(solution) + chains * _JOBS_PER_CHAIN + followed
+
+
+def _work_of_processes(solution: Solution) -> int:
+    """The work of a solution, in jobs: also processes without response times are looked through."""
+    return solution.jobs + len(solution.context.system.processes) * _JOBS_PER_PROCESS
 
 
 @dataclass(frozen=True)
@@ -83,8 +88,8 @@ class PhaseCases:
             return None
         combinations = list(phase_combinations(unknown))
         first = _solution(solution.context, combinations[0])
-        # All of them are compared, before it is known how many of them are solved.
-        if count * first.jobs > MAX_JOBS:
+        # All of them are compared, process by process, before it is known how many of them are solved.
+        if count * _work_of_processes(first) > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
 
