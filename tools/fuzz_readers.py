@@ -44,6 +44,7 @@ from amalthea_uros.services.analyze import analyze_files
 from amalthea_uros.services.build import describe
 from amalthea_uros.services.check import check_files
 from amalthea_uros.services.diff import diff
+from amalthea_uros.services.first_answer import first_answer
 from amalthea_uros.services.generate import check_colcon_meta
 from amalthea_uros.services.import_code import import_code
 from amalthea_uros.services.import_recording import import_recording
@@ -156,6 +157,13 @@ def _kept(path: Path, target: Path) -> Path:
     )
 
 
+def _analyzed(path: Path) -> object:
+    """What `amuros analyze` finds."""
+    result = analyze_files(path, with_missing=True)
+    first_answer(result)
+    return result
+
+
 def _baseline(path: Path) -> None:
     try:
         read_baseline(path)
@@ -209,7 +217,7 @@ def _written(path: Path) -> None:
 #: What is done with the files of `fuzzing.seeds` of the same name.
 READERS: dict[str, Callable[[Path], object]] = {
     "amxmi": lambda path: open_system([path]),
-    "amxmi-analyzed": analyze_files,
+    "amxmi-analyzed": _analyzed,
     "amxmi-checked": check_files,
     "amxmi-compared": lambda path: diff(path, _MODEL),
     "amxmi-written": _written,
@@ -218,7 +226,7 @@ READERS: dict[str, Callable[[Path], object]] = {
     "can": _can_log,
     "dbc": _with_dbc,
     "description": describe,
-    "description-analyzed": analyze_files,
+    "description-analyzed": _analyzed,
     "description-checked": check_files,
     "editor": _editor,
     "importers": _importers,

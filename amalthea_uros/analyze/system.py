@@ -14,7 +14,7 @@ from amalthea_uros.analyze.constraints.evaluator import ConstraintEvaluator
 from amalthea_uros.analyze.constraints.requirements import evaluate_requirements
 from amalthea_uros.analyze.hosts_and_messages import executors_and_messages, solved
 from amalthea_uros.analyze.loads import note_ignored, processor_results
-from amalthea_uros.analyze.phases.cases import PhaseCases
+from amalthea_uros.analyze.phases.cases import MAX_JOBS, PhaseCases, work_of
 from amalthea_uros.analyze.phases.merged import merged, over_all_phases
 from amalthea_uros.analyze.process_results import process_results
 from amalthea_uros.analyze.response_times.solution import Solution
@@ -40,11 +40,11 @@ def analyze_system(system: System, settings: Settings | None = None) -> Analysis
 
 
 def analyze_while(system: System, settings: Settings | None, is_wanted: Callable[[Analysis], bool]) -> Analysis | None:
-    """The analysis of a system; None as soon as what is found for some unknown phases is not wanted.
+    """The analysis of a system; None as soon as what is found is not wanted.
 
     Parameters
     ----------
-    is_wanted : of the analysis for some phases, which are possible; it is not asked if there are none
+    is_wanted : asked of the analysis for each case of unknown phases, which is possible; of the only one if there are no cases
     """
     if not isinstance(system, System):
         raise TypeError(
@@ -60,7 +60,9 @@ def analyze_while(system: System, settings: Settings | None, is_wanted: Callable
     every, is_complete = _of_all_phases(solution, unknown, executors, crossing, is_wanted)
     if not is_complete:
         return None
-    found = every or _analysis(solution, JobBudget(), executors, crossing)
+    found = every or _of_any_phase(solution, executors, crossing)
+    if every is None and not is_wanted(found):
+        return None
     phases, notes = phase_assumptions(system, are_all_evaluated=every is not None), solution.context.notes
     # Executors and messages are evaluated once, for all phases; if there are cases, nothing else is based on the solution for these.
     is_used = every is None or bool(executors or crossing)
@@ -80,21 +82,34 @@ def _of_all_phases(
     is_wanted: Callable[[Analysis], bool],
 ) -> tuple[Analysis | None, bool]:
     """The analysis over all combinations of unknown phases, None if there are too many; and whether all that was found is wanted."""
-    cases, budget = PhaseCases.of(solution, unknown), JobBudget()
+    cases, budget, chains = PhaseCases.of(solution, unknown), JobBudget(), len(solution.context.system.events.chains)
     if cases is None:
+        return None, True
+    of_everything, work_of_each = cases.of_everything(), work_of(cases.first, chains)
+    if len(of_everything) * work_of_each > MAX_JOBS:
         return None, True
     analyses: dict[int, Analysis] = {}
     # Loads are those of whole cycles, whatever the phases.
     loads: Results[ProcessorResult] | None = None
-    for number, each in cases.solutions(cases.of_everything()):
+    # The solution for unknown phases is needed before the first case.
+    work = work_of(solution, chains)
+    for number, each in cases.solutions(of_everything):
         same = {
             name: analyses[0].processes[name] for name, of_process in cases.of_processes.items() if number not in of_process
         }
-        analyses[number] = _analysis(each, budget, executors, crossing, loads, same)
+        analyses[number] = replace(_analysis(each, budget, executors, crossing, loads, same), work=work + work_of_each)
+        work = 0
         loads = analyses[number].processors
         if not is_wanted(analyses[number]):
             return None, False
     return merged(analyses, cases, solution), True
+
+
+def _of_any_phase(solution: Solution, executors: Results[ExecutorResult], crossing: Results[ChainResult]) -> Analysis:
+    """The analysis in which any job can take what comes from outside, but for the phases of single chains."""
+    budget = JobBudget()
+    analysis = _analysis(solution, budget, executors, crossing)
+    return replace(analysis, work=work_of(solution, len(analysis.chains)) + budget.work)
 
 
 def _analysis(

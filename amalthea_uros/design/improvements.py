@@ -10,7 +10,7 @@ from itertools import islice
 from amalthea_uros._internal.records import dataclass, field, replace
 from amalthea_uros._internal.shown import Shown
 from amalthea_uros.analyze.impact import Amount, ComparedFigure, Effect, FigureUnit, ResultPart, impact
-from amalthea_uros.analyze.phases.cases import MAX_JOBS, work_of
+from amalthea_uros.analyze.phases.cases import MAX_JOBS
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.results.chains import EXPLAINED, LIMITED, LatencyQuantity
 from amalthea_uros.analyze.results.explanations import ChainExplanation
@@ -31,8 +31,8 @@ from amalthea_uros.units import Rounding, Time, percent_text, time_text
 MAX_ANALYSES, MIN_ANALYSES = 24, 4
 #: The processes of all changed systems together.
 MAX_PROCESSES = 2_000
-#: The work of the combinations of phases of all changed systems together: that of three systems with as many as are evaluated.
-MAX_WORK = 3 * MAX_JOBS
+#: The work of the analyses of all changed systems together: that of two systems with as many phases as are evaluated.
+MAX_WORK = 2 * MAX_JOBS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +88,7 @@ class Improvements(Shown):
     found : the shortest latency first, then combinations of them, from two changes on
     tried : number of changed systems that were analysed
     untried : number of changes that were not, because there are too many, or because of their phases
-    is_work_exceeded : whether some were not because all combinations of phases of those before took as much work as is allowed
+    is_work_exceeded : whether some were not because the analyses of those before took as much work as is allowed
     """
 
     chain: str
@@ -185,7 +185,7 @@ class Trial:
     ----------
     count : of changed systems whose analysis is known
     known : what the analyses found; changes without an effect, or with that of another one, are analysed once
-    work : of the combinations of phases that were analysed
+    work : of the analyses, in jobs
     refused : number of changed systems that were not analysed because of the work of those before
     editor : of the description; None for other systems
     """
@@ -249,7 +249,7 @@ class Trial:
 
     def _is_shorter(self, limit: Time | None, for_a_phase: Analysis) -> bool:
         """Whether the maximum is shorter than a limit for a phase of a changed system; if not, it is not over all phases either."""
-        self.work += work_of(for_a_phase.solution)
+        self.work += for_a_phase.work
         now = _latency(for_a_phase, self.chain, self.quantity)
         return now is not None and (limit is None or now < limit)
 

@@ -12,6 +12,7 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass, field
+from amalthea_uros.analyze.phases.cases import MAX_JOBS
 from amalthea_uros.analyze.results.analysis import Analysis
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.design.changes.change import Change
@@ -122,24 +123,26 @@ def _possible(origin: DescriptionOrigin | SystemOrigin, changes: Sequence[Change
 
 @dataclass(slots=True)
 class _ValueTrial:
-    """Analyses with statements, up to an effort.
+    """Analyses with statements, up to an effort and a work.
 
     Attributes
     ----------
     before : the processes that have a bound without any
     size : the number of processes
+    work : of the analyses, in jobs
     """
 
     origin: DescriptionOrigin | SystemOrigin
     before: set[str]
     size: int
     effort: int = 0
+    work: int = 0
     _gained: dict[tuple[Change, ...], list[str]] = field(default_factory=dict)
 
     def may_continue(self) -> bool:
-        """Whether another analysis is within the effort; counts it."""
+        """Whether another analysis is within the effort, which it counts, and the work of those before is not too much."""
         self.effort += max(1, self.size)
-        return self.effort <= _EFFORT
+        return self.effort <= _EFFORT and self.work < MAX_JOBS
 
     def stated(self, current: Analysis, unset: Sequence[Change], first_priority: int) -> list[Change]:
         """All values that processes without a bound lack, and what these lack once they are stated."""
@@ -174,6 +177,7 @@ class _ValueTrial:
 
     def note(self, changes: Sequence[Change], analysis: Analysis) -> None:
         """Remember what an analysis with changes gains."""
+        self.work += analysis.work
         bounded = _bounded(analysis)
         names = self.origin.present.system.processes
         self._gained[tuple(changes)] = [name for name in names if name in bounded and name not in self.before]

@@ -13,10 +13,11 @@ from amalthea_uros import Settings, analyze_system, describe
 from amalthea_uros.analyze import system as whole
 from amalthea_uros.analyze.explanations.processes import shares
 from amalthea_uros.analyze.phases import cases as phases
+from amalthea_uros.analyze.phases import merged
 from amalthea_uros.analyze.priorities.assignment import propose_priorities
 from amalthea_uros.analyze.sensitivity import max_growth
 from amalthea_uros.judge.verdict import Verdict
-from amalthea_uros.perf.activities import Call
+from amalthea_uros.perf.activities import Call, Incomplete
 from amalthea_uros.perf.events import ProcessChange, ProcessEvent, RunnableChange, RunnableEvent
 from amalthea_uros.perf.software import Label, Runnable
 from amalthea_uros.perf.stimuli import Counter
@@ -131,6 +132,18 @@ class TestTooManyPhases:
         (chain,) = analysis.chains
         assert "over all 20 phases" in chain.values[0].method
 
+    def test_the_phases_of_single_chains_take_a_limited_work_together(self, monkeypatch):
+        monkeypatch.setattr(phases, "MAX_COMBINATIONS", 100)
+        other = "        - {name: Other, topic: other, rate: 100 Hz, message_size: 4 B, execution_time: 1 us}\n      timers:"
+        second = "chains:\n  - {name: first, path: [Executor_Task, Message_Factor, Control_Function]}\n"
+        text = sample(other=("      timers:", other), second=("chains:\n", second))
+        both = analyze(text)
+        assert ["over all 20 phases" in chain.values[0].method for chain in both.chains] == [True, True]
+        monkeypatch.setattr(merged, "_MAX_WORK_OF_CHAINS", both.work * 3 // 4)
+        first = analyze(text)
+        assert ["over all 20 phases" in chain.values[0].method for chain in first.chains] == [True, False]
+        assert first.work < both.work * 3 // 4
+
 
 def test_loads_are_computed_once_for_all_phases(monkeypatch):
     computed, one = [], whole.processor_results
@@ -148,6 +161,46 @@ def test_what_takes_too_long_is_too_many_phases(limit, value, monkeypatch):
     monkeypatch.setattr(phases, limit, value)
     analysis = analyze_system(describe(SAMPLE).system)
     assert times(analysis, "Message_Factor")[2] is Claim.BOUND
+
+
+class TestTheWorkOfEachCombination:
+    """A callback that accesses 500 labels, with 50 * 10 * 2 phases."""
+
+    READS = ", ".join(f"label_{number}" for number in range(500))
+    PLAIN = (SAMPLE.parent / "rclc-in-executor.yaml").read_text()
+    ACCESSING = PLAIN.replace("reads: [command", f"reads: [{READS}, command")
+    #: With a task whose jobs overlap several iterations of the executor, no two phases are alike.
+    BRIEF, LONG = "period: 500 ms, execution_time: 2 us", "period: 500 ms, execution_time: 100 ms"
+    OVERLAPPING = ACCESSING.replace(BRIEF, LONG)
+
+    @pytest.fixture(autouse=True)
+    def analyses(self, monkeypatch):
+        found, one = [], whole._analysis
+        monkeypatch.setattr(whole, "_analysis", lambda *given: found.append(given) or one(*given))
+        return found
+
+    def test_only_the_combinations_that_are_solved_count(self, analyses):
+        assert times(analyze(self.ACCESSING), "rclc_executor")[2] is Claim.EXACT
+        assert len(analyses) == 24
+
+    def test_activities_count(self, analyses):
+        analysis = analyze(self.OVERLAPPING)
+        assert len(analyses) == 1
+        assert times(analysis, "rclc_executor")[2] is Claim.BOUND
+        assert any(each.endswith("any job can be that one") for each in analysis.assumptions)
+
+    def test_so_do_chains(self, analyses):
+        chains = "".join(f"  - {{name: chain_{number}, path: [On_Imu, Control]}}\n" for number in range(30))
+        analyze(self.PLAIN.replace(self.BRIEF, self.LONG).replace("chains:\n", f"chains:\n{chains}"))
+        assert len(analyses) == 1
+
+    def test_so_do_processes_without_a_response_time(self, analyses):
+        system = describe_text(self.OVERLAPPING).assembly.system
+        incomplete = Incomplete(reason="an incomplete Ticks")
+        runnables = tuple(replace(each, activities=(incomplete, *each.activities)) for each in system.software.runnables)
+        analysis = analyze_system(replace(system, software=replace(system.software, runnables=runnables)))
+        assert len(analyses) == 1
+        assert [each.response for each in analysis.processes] == [None, None]
 
 
 def test_jobs_that_repeat_after_millions_of_others_are_not_looked_at_one_by_one():

@@ -173,25 +173,33 @@ def test_the_phases_of_a_change_that_shortens_nothing_are_not_all_analysed(monke
 
 @pytest.mark.parametrize("limit", [1, 5_000, 20_000])
 def test_the_work_of_all_phases_of_all_changes_is_bounded(limit, monkeypatch, advanced):
-    """What is counted is each combination of phases that is analysed; the analysis that reaches the limit is completed."""
+    """The work of each combination of phases that is analysed counts; the analysis that reaches the limit is completed."""
     monkeypatch.setattr(improvements_module, "MAX_WORK", limit)
-    work, of_phase = [], analyze_module._analysis
+    work = []
 
-    def counted(solution, *others):
-        work[-1] += sum(response.jobs + 100 for response in solution.responses.values())
-        return of_phase(solution, *others)
-
-    def started(*given):
+    def started(system, settings, is_wanted):
         assert sum(work) < limit
         work.append(0)
-        return analyze_module.analyze_while(*given)
 
-    monkeypatch.setattr(analyze_module, "_analysis", counted)
+        def is_wanted_for(analysis):
+            work[-1] += analysis.work
+            return is_wanted(analysis)
+
+        return analyze_module.analyze_while(system, settings, is_wanted_for)
+
     monkeypatch.setattr(improvements_module, "analyze_while", started)
     found = improvements(advanced, CHAIN)
     assert limit <= sum(work) < limit + max(work)
     assert found.untried > 0
-    assert "more were not tried, because all combinations of phases" in tried(found)
+    assert "more were not tried, because the analyses of the changed systems" in tried(found)
+
+
+def test_the_work_of_an_analysis_without_unknown_phases_counts_too(monkeypatch, of_one_phase):
+    analyses, one = [], improvements_module.analyze_while
+    monkeypatch.setattr(improvements_module, "analyze_while", lambda *given: analyses.append(given) or one(*given))
+    monkeypatch.setattr(improvements_module, "MAX_WORK", 1)
+    assert improvements(of_one_phase, CHAIN).is_work_exceeded
+    assert len(analyses) == 1
 
 
 def test_only_changes_that_are_found_are_analysed_for_all_phases(monkeypatch, advanced):

@@ -8,6 +8,7 @@ from hand_made_systems import of_parts, read, ticks, write
 from amalthea_uros import build_model, load, save
 from amalthea_uros.analyze.system import analyze_system
 from amalthea_uros.bridge.extract import extract
+from amalthea_uros.design import missing_values as module
 from amalthea_uros.design.changes.apply import apply
 from amalthea_uros.design.changes.change import parse_change
 from amalthea_uros.design.changes.key import Configuration
@@ -52,6 +53,12 @@ def proposed(system):
 def test_what_is_missing_is_named_and_nothing_else():
     # As long as nobody knows where C is executed, it may delay A. Its priority is not needed: there is a bound for any order.
     assert proposed(SYSTEM) == ({"B.period", "C.scheduler"}, ("A", "B", "C"))
+
+
+def test_needless_values_are_not_looked_for_once_the_analyses_have_taken_too_much_work(monkeypatch):
+    """What is gained stays the same."""
+    monkeypatch.setattr(module, "MAX_JOBS", 1)
+    assert proposed(SYSTEM) == ({"B.period", "C.scheduler", "A.deadline", "B.deadline"}, ("A", "B", "C"))
 
 
 def test_who_has_no_execution_time_is_given_one_in_what_it_calls_or_itself():

@@ -2,12 +2,15 @@
 
 from dataclasses import replace
 
+import pytest
 from design_systems import system_of
 from effort import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
 from amalthea_uros import optimize, simulate
+from amalthea_uros._internal.plural import counted
+from amalthea_uros.design.optimize import judged
 from amalthea_uros.design.optimize.judged import Effort
 from amalthea_uros.design.optimize.problem import Conclusion
 from amalthea_uros.design.optimize.search import search
@@ -85,3 +88,17 @@ def test_an_interrupt_or_the_time_limit_ends_a_search_with_what_was_found():
     assert found.tried == len(calls[0]) + len(calls[1])
     late = search(plan.problem, Effort(ended=lambda: "the time limit was reached"))
     assert (late.conclusion, late.tried, late.ended) == (Conclusion.NOT_FOUND, 0, "the time limit was reached")
+
+
+@pytest.mark.parametrize("designs", [1, 2])
+def test_the_work_of_the_analyses_ends_a_search_with_what_was_found(designs, monkeypatch):
+    """What counts is the work of all designs; the analysis with which it is reached is completed."""
+    tasks = [{"name": name, "C": 1, "T": 8, "D": 8} for name in "ABCDE"]
+    plan = plan_optimization(system_of(tasks), goals=["load"])
+    work = plan.before.work
+    assert work >= 5 * 100
+    monkeypatch.setattr(judged, "WORK_PER_DESIGN", designs * work // 500)
+    found = search(plan.problem, Effort(designs=500, is_complete=True))
+    assert found.tried == designs
+    assert found.conclusion is Conclusion.BEST_FOUND
+    assert found.ended == f"judging {counted(designs, 'design')} took as much work as 500 designs may take"

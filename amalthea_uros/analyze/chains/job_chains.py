@@ -31,15 +31,17 @@ TOO_MANY_JOBS = f"the job chains of all chains together, in all phases, would ha
 
 @dataclass(slots=True)
 class JobBudget:
-    """How many jobs the job chains of a system may still have.
+    """How many jobs the job chains of a system may still have, and how much work single chains took.
 
     Attributes
     ----------
+    work : of the phases of single chains, in jobs
     is_exceeded : whether job chains were not built because of that
     """
 
     jobs: int = MAX_JOBS
     is_exceeded: bool = False
+    work: int = 0
 
     def build(self, chain: Sequence[ReadWriteTimes], steady_state_start: Time) -> JobChains | None:
         """The job chains of one cycle; None if they would have too many jobs."""

@@ -68,6 +68,7 @@ def evaluate_executors_and_messages(
     results = (evaluate_executors(each, sending=times.sending, extra_jitter=times.jitter) for each in solution.clients)
     executors = Results(result for each in results for result in each)
     host, system = evaluate_host(solution), solution.context.system
+    solution.jobs += host.releases.jobs
     evaluator = MessageChains(
         ChainEvaluator(solution),
         CallbackHops(executors, times.jitter, system),

@@ -46,16 +46,16 @@ def with_messages_of_others(described: System, solution: Solution) -> Solution:
     ----------
     solution : with the messages as stated
     """
-    stated, settings = solution.context.system, solution.context.settings
-    releases = HostReleases(HostTopics(stated.host, solution)).solve()
+    stated = solution.context.system
+    releases = _releases(stated, solution)
     for _ in range(_MAX_PASSES):
         system = solution.context.system
         for transmission in handed_over(releases):
             system = _with_real_times(system, transmission, releases)
         if system is solution.context.system:
             break
-        solution = solve(timing_context(system, settings))
-        releases = HostReleases(HostTopics(stated.host, solution)).solve()
+        solution = _solved(system, solution)
+        releases = _releases(stated, solution)
     return _checked(described, stated, solution, releases)
 
 
@@ -69,8 +69,8 @@ def _checked(described: System, stated: System, solution: Solution, releases: Ho
         system = solution.context.system
         for transmission, why in more.items():
             system = with_unknown_times(system, transmission, why.reason, described)
-        solution = solve(timing_context(system, solution.context.settings))
-        releases = HostReleases(HostTopics(stated.host, solution)).solve()
+        solution = _solved(system, solution)
+        releases = _releases(stated, solution)
     senders = {each.name: _sender(each, releases) for each in handed_over(releases)}
     for handle, after in changed:
         solution.context.notes.warning("HST003", _change(handle, after, senders[handle.transmission or ""]), handle)
@@ -79,6 +79,20 @@ def _checked(described: System, stated: System, solution: Solution, releases: Ho
             publisher = next(iter(releases.topics.publishers(plain_topic(transmission.topic))), transmission)
             solution.context.notes.error("HST004", why.reason, publisher)
     return solution
+
+
+def _solved(system: System, before: Solution) -> Solution:
+    """The solution for changed messages, with the work of those before."""
+    solution = solve(timing_context(system, before.context.settings))
+    solution.jobs += before.jobs
+    return solution
+
+
+def _releases(stated: System, solution: Solution) -> HostReleases:
+    """The releases on the host, whose work becomes part of that of the solution."""
+    releases = HostReleases(HostTopics(stated.host, solution)).solve()
+    solution.jobs += releases.jobs
+    return releases
 
 
 class _Unknown(NamedTuple):

@@ -18,6 +18,7 @@ bound of the paper for chains.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.analyze.response_times.busy_window import Interference
@@ -71,8 +72,14 @@ class _BusyWindow:
         if length is None or task.events.eta_plus(length) > max_jobs(task):
             reason = "its busy window is too long: the callbacks need nearly all of the core"
             return Response(worst=None, best=best, method=METHOD, source=SOURCE, reason=reason)
-        end, worst, jobs = 0, 0, task.events.eta_plus(length)
+        end, worst, jobs = 0, 0, 0
         for after in releases(task, length):
+            # All of them end within the busy window, except that jobs that take no time can wait for those released at its end.
+            if task.demand.worst and length - after <= worst:
+                break
+            jobs += 1
+            if worst and self._served(task, after, after + worst) <= after + worst:
+                continue
             reached = self._end(task, after, end)
             if reached is None:
                 reason = "its busy window does not end"
@@ -87,10 +94,9 @@ class _BusyWindow:
         ----------
         before : the end of an earlier job, which is not later, as the demand up to each moment is not greater
         """
-        own, last = task.demand.max_demand(task.events.eta_plus(after + 1)), task.demand.worst
         end = max(after + 1, before)
         for _ in range(MAX_STEPS):
-            reached = self.supply.time_for(own + self._of_others(task, end - last + 1) + self.higher.in_window(end))
+            reached = self._served(task, after, end)
             if reached <= end:
                 return end
             if reached > LIMIT:
@@ -98,12 +104,18 @@ class _BusyWindow:
             end = reached
         return None
 
+    def _served(self, task: AnalysedTask, after: Time, end: Time) -> Time:
+        """When the last job that is released up to `after` has ended, with everything before it, unless it ends before `end`."""
+        own = task.demand.max_demand(task.events.eta_plus(after + 1))
+        others = self._of_others(task, end - task.demand.worst + 1)
+        return self.supply.time_for(own + others + self.higher.in_window(end))
+
     def _of_others(self, task: AnalysedTask, window: Time) -> Time:
         """The demand of the other callbacks in a window, from that of all, so that all callbacks share one interference."""
         return self.callbacks.in_window(window) - task.demand.max_demand(task.events.eta_plus(window))
 
 
 def releases(task: AnalysedTask, window: Time) -> Iterator[Time]:
-    """The earliest release of each job in a busy window; of jobs that can be released together, that of the last one counts."""
-    for job in range(1, task.events.eta_plus(window) + 1):
-        yield task.events.delta_min(job)
+    """The earliest releases of the jobs in a busy window, each once: of jobs that can be released together, the last one counts."""
+    every = map(task.events.delta_min, range(1, task.events.eta_plus(window) + 1))
+    return (release for release, _ in groupby(every))

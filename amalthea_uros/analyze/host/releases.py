@@ -41,6 +41,7 @@ class HostReleases:
     reasons : why nothing is known of an executor
     processors : by the names of executors
     windows : of the executors for which these bound latencies, by name
+    jobs : number of jobs that were examined in all passes
     """
 
     topics: HostTopics
@@ -48,6 +49,7 @@ class HostReleases:
     reasons: dict[str, str] = field(default_factory=dict)
     processors: dict[str, HostProcessor] = field(default_factory=dict)
     windows: dict[str, Windows] = field(default_factory=dict)
+    jobs: int = 0
 
     def solve(self) -> HostReleases:
         """Find the least fixed point, executor by executor; what has none is unknown."""
@@ -59,7 +61,7 @@ class HostReleases:
         }
         if not overloaded:
             return self
-        by_group = HostReleases(replace(self.topics, by_group=frozenset(overloaded)))
+        by_group = HostReleases(replace(self.topics, by_group=frozenset(overloaded)), jobs=self.jobs)
         by_group._solve_all()
         return by_group
 
@@ -130,12 +132,13 @@ class HostReleases:
         tasks, cores = self.tasks(executor), self.processors[executor.name].cores
         if executor.name not in self.topics.by_group:
             routes = [self.topics.route(callback) for callback in executor.callbacks]
-            self.latencies |= SharedThreads(executor, cores, routes, tasks, self.preempting(executor)).latencies()
+            self._use(SharedThreads(executor, cores, routes, tasks, self.preempting(executor)).latencies())
             return
         self._use(in_groups(executor, tasks))
 
     def _use(self, responses: Mapping[str, Response]) -> None:
         self.latencies |= responses
+        self.jobs += sum(response.jobs for response in responses.values())
         for response in responses.values():
             if response.worst is None:
                 raise UnknownError(response.reason)

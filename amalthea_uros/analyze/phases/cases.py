@@ -33,21 +33,36 @@ from amalthea_uros.timing.activation.releases import (
     with_phases,
 )
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.jobs.counters import first_effect
+from amalthea_uros.timing.jobs.counters import first_effect, reached
+from amalthea_uros.timing.jobs.positions import MAX_POSITIONS
 from amalthea_uros.units import Time
 
 #: The number of the first combination of each case, and how many combinations the case has.
 Cases: TypeAlias = Mapping[int, int]
-#: With more combinations of phases, or more jobs in all of them, any job can be the one that takes what comes from outside.
+#: With more combinations of phases, or more work of all that are solved, any job can be the one that takes what comes from outside.
 MAX_COMBINATIONS = 1000
-MAX_JOBS = 320_000
-#: A solution takes as long for a process as for so many jobs.
-_JOBS_PER_PROCESS = 100
+MAX_JOBS = 400_000
+#: A solution, with what is evaluated of it, takes as long for a process or a chain as for so many jobs, and for an activity as for one.
+_JOBS_PER_PROCESS, _JOBS_PER_CHAIN = 100, 50
 
 
-def work_of(solution: Solution) -> int:
-    """The work of a combination of phases, in jobs."""
-    return sum(response.jobs + _JOBS_PER_PROCESS for response in solution.responses.values())
+def work_of(solution: Solution, chains: int) -> int:
+    """The work of a solution and of what is evaluated of it, in jobs.
+
+    Parameters
+    ----------
+    chains : number of those that are evaluated
+    """
+    processes, sizes = solution.context.system.processes.values(), solution.context.dataflow.events.sites.sizes
+    activities = (reached(process.activities, sizes) for process in processes)
+    # Of processes with more activities, these are not followed one by one.
+    followed = sum(each for each in activities if each <= MAX_POSITIONS)
+    return _work_of_processes(solution) + chains * _JOBS_PER_CHAIN + followed
+
+
+def _work_of_processes(solution: Solution) -> int:
+    """The work of a solution, in jobs: also processes without response times are looked through."""
+    return solution.jobs + len(solution.context.system.processes) * _JOBS_PER_PROCESS
 
 
 @dataclass(frozen=True)
@@ -73,7 +88,8 @@ class PhaseCases:
             return None
         combinations = list(phase_combinations(unknown))
         first = _solution(solution.context, combinations[0])
-        if count * work_of(first) > MAX_JOBS:
+        # All of them are compared, process by process, before it is known how many of them are solved.
+        if count * _work_of_processes(first) > MAX_JOBS:
             return None
         return cls(solution, first, combinations)
 

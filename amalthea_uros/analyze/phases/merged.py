@@ -13,7 +13,7 @@ from amalthea_uros._internal.by_name import Results
 from amalthea_uros._internal.lazy_mapping import LazyMapping
 from amalthea_uros._internal.plural import counted
 from amalthea_uros.analyze.chains.evaluator import ChainEvaluator
-from amalthea_uros.analyze.phases.cases import PhaseCases
+from amalthea_uros.analyze.phases.cases import MAX_JOBS, PhaseCases, work_of
 from amalthea_uros.analyze.response_times import metrics
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.analyze.results.analysis import Analysis
@@ -29,6 +29,8 @@ from amalthea_uros.units import Time
 
 #: The metrics of more phases are merged at once, because the schedules of all of them would be kept.
 _MOST_KEPT = 100
+#: Of all chains that are evaluated for their own phases, because those of the whole system are too many.
+_MAX_WORK_OF_CHAINS = 3 * MAX_JOBS
 
 T = TypeVar("T")
 R = TypeVar("R", ProcessResult, CallbackResult)
@@ -66,6 +68,7 @@ def merged(analyses: Mapping[int, Analysis], cases: PhaseCases, solution: Soluti
         requirements=Results(_requirements(list(analyses.values()))),
         assumptions=_each_once(analyses.values(), lambda analysis: analysis.assumptions),
         findings=_each_once(analyses.values(), lambda analysis: analysis.findings),
+        work=sum(analysis.work for analysis in analyses.values()),
     )
 
 
@@ -116,10 +119,14 @@ def over_all_phases(chain: EventChain, evaluation: ChainEvaluator) -> ChainResul
     cases = PhaseCases.of(evaluation.solution, evaluation.occurrences(chain))
     if cases is None:
         return evaluation.chain(chain)
-    of_chain = cases.of_chain(chain)
+    of_chain, budget = cases.of_chain(chain), evaluation.budget
+    work = len(of_chain) * work_of(cases.first, chains=1)
+    if work > min(MAX_JOBS, _MAX_WORK_OF_CHAINS - budget.work):
+        return evaluation.chain(chain)
+    budget.work += work
     results = []
     for _, solution in cases.solutions(of_chain):
-        results.append(ChainEvaluator(solution, evaluation.budget).chain(chain))
+        results.append(ChainEvaluator(solution, budget).chain(chain))
         evaluation.context.notes.include(solution.context.notes)
     return _merged_chain(results, list(of_chain.values()))
 

@@ -119,7 +119,9 @@ def _round_on(core: str, solution: Solution, previous: _CoreRound | None) -> _Co
     activations = [(solution.event_models.get(name), solution.context.demands.get(name)) for name in names]
     if previous is not None and activations == previous.activations:
         return previous
-    return _CoreRound(activations, responses_on(core, solution))
+    responses = responses_on(core, solution)
+    solution.jobs += sum(response.jobs for response in responses.values())
+    return _CoreRound(activations, responses)
 
 
 def _event_models(

@@ -38,6 +38,7 @@ class Solution:
     reasons : why the response time of a process is unknown
     migrating : the tasks that any of several cores executes; `responses` has only those with a core
     schedules : of the cores of which it is known and not too long
+    jobs : number of jobs that were examined for it in all passes, those of callbacks of the host among them
     """
 
     context: TimingContext
@@ -47,6 +48,7 @@ class Solution:
     reasons: dict[str, str] = field(default_factory=dict)
     schedules: dict[str, CoreSchedule] = field(default_factory=dict, repr=False)
     migrating: Mapping[str, MigratingResult] = field(default_factory=dict, repr=False)
+    jobs: int = 0
     _threads: dict[str, ExecutorThread] = field(default_factory=dict, repr=False)
 
     @property

@@ -35,6 +35,7 @@ class Analysis(Shown):
     worst_solutions : for each process the solution of the phase in which its response time is the worst; empty if all are known
     executors : those that spin in loops
     host : the executors of the host
+    work : of all phases that were analysed, in jobs; processes and activities count, too
     assumptions : on which the numbers are based
     findings : what the analysis does not take into account
     """
@@ -51,6 +52,7 @@ class Analysis(Shown):
     worst_solutions: Mapping[str, Solution] = field(default_factory=dict, repr=False, compare=False)
     executors: Results[ExecutorResult] = field(default_factory=Results)
     host: Results[ExecutorResult] = field(default_factory=Results)
+    work: int = field(default=0, repr=False, compare=False)
 
     def __repr__(self) -> str:
         parts = [counted(len(self.processes), "process"), counted(len(self.chains), "chain")]

@@ -82,6 +82,7 @@ class DesignEvaluator:
             violations=dict(_violations(analysis, ranges)),
             values=tuple(value_of(goal, analysis, candidate, scale) for goal in self.goals),
             is_exact=_is_exact(analysis, scale.figures) and all(found.is_exact for found in ranges.values()),
+            work=analysis.work,
         )
 
     def figures(self, candidate: Candidate, analysis: Analysis) -> Figures:

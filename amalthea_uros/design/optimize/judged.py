@@ -9,6 +9,7 @@ from itertools import islice
 from operator import le
 from typing import TypeAlias
 
+from amalthea_uros._internal.plural import counted
 from amalthea_uros._internal.records import dataclass, field
 from amalthea_uros.design.optimize.problem import Conclusion, DesignEvaluation, Evaluator, Feasibility, Problem, SearchResult
 from amalthea_uros.design.optimize.space import Candidate
@@ -67,6 +68,8 @@ def concluded(evaluations: Iterable[DesignEvaluation], proof: str, ended: str = 
 
 
 INTERRUPTED = "interrupted"
+#: All designs together may take so much work for each that may be judged, in jobs.
+WORK_PER_DESIGN = 10_000
 
 
 class EndedError(Exception):
@@ -79,7 +82,7 @@ class Effort:
 
     Attributes
     ----------
-    designs : at most so many are judged
+    designs : at most so many are judged, and fewer if their analyses take more than `WORK_PER_DESIGN` on average
     is_complete : whether designs with more changes are judged although some with fewer changes meet all limits
     ended : asked after each design: why to end early, "" to go on
     progress : told how many designs have been judged
@@ -98,6 +101,7 @@ class Recorder:
     evaluate: Evaluator
     effort: Effort
     found: dict[Candidate, DesignEvaluation] = field(default_factory=dict)
+    work: int = 0
 
     def __call__(self, candidates: Sequence[Candidate]) -> list[DesignEvaluation]:
         """Judge designs.
@@ -111,6 +115,7 @@ class Recorder:
         self._check_ended()
         for evaluation in self.evaluate(new[:rest]):
             self.found[evaluation.candidate] = evaluation
+            self.work += evaluation.work
             self.effort.progress(len(self.found))
             self._check_ended()
         if len(new) > rest:
@@ -120,6 +125,9 @@ class Recorder:
     def _check_ended(self) -> None:
         if reason := self.effort.ended():
             raise EndedError(reason)
+        if self.work >= self.effort.designs * WORK_PER_DESIGN:
+            judged, allowed = counted(len(self.found), "design"), counted(self.effort.designs, "design")
+            raise EndedError(f"judging {judged} took as much work as {allowed} may take")
 
 
 #: Designs are judged in groups of this size, whatever judges them, so that a search ends after the same design everywhere.

@@ -33,6 +33,7 @@ class DesignEvaluation:
     is_excluded : whether a lower bound shows that a limit is exceeded, so that the design is not analysed
     broken_rule : the rule of the space that the design breaks, so that it is not analysed; "" if there is none
     reason : why there is no analysis, "" if there is one
+    work : of the analysis, in jobs
     """
 
     candidate: Candidate
@@ -43,6 +44,7 @@ class DesignEvaluation:
     is_excluded: bool = False
     broken_rule: str = ""
     reason: str = ""
+    work: int = field(default=0, compare=False)
 
     @property
     def changes(self) -> int:

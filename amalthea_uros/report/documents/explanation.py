@@ -353,9 +353,7 @@ def tried(found: Improvements) -> str:
     is_combined = any(each.change.is_combined for each in found.found)
     how = "one at a time, and the best of them together" if is_combined else "one at a time"
     text = f"{counted(found.tried, 'change')} analysed, {how}"
-    reason = (
-        ", because all combinations of phases of the changed systems together take too long" if found.is_work_exceeded else ""
-    )
+    reason = ", because the analyses of the changed systems together take too long" if found.is_work_exceeded else ""
     return f"{text}; {found.untried:,} more were not tried{reason}" if found.untried else text
 
 
