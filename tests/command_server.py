@@ -3,6 +3,7 @@
 It is a process of its own and not that of the tests, as a copy of that one, with all tests, takes a multiple of the time.
 """
 
+import gc
 import marshal
 import os
 import runpy
@@ -22,7 +23,10 @@ import shared_analyses
 from click import Context
 from click.testing import CliRunner
 
-SAMPLE = Path(__file__).parents[1] / "samples" / "bodas-test-advanced.yaml"
+from amalthea_uros.cli.process import GARBAGE_THRESHOLD
+
+SAMPLES = Path(__file__).parents[1] / "samples"
+SAMPLE = SAMPLES / "bodas-test-advanced.yaml"
 
 #: Where there is no such process, each command starts anew.
 IS_POSSIBLE = hasattr(os, "fork") and hasattr(socket, "SOCK_SEQPACKET")
@@ -81,9 +85,16 @@ def warm_up() -> None:
     for command in COMMANDS:
         cli.get_command(Context(cli), command)
     with TemporaryDirectory() as folder:
-        for words in ("analyze", f"build -o {folder}/app.amxmi", "check", "simulate --duration 10ms"):
-            command, *options = words.split()
-            outcome = CliRunner().invoke(cli, [command, str(SAMPLE), *options])
+        for words in (
+            f"analyze {SAMPLE}",
+            f"analyze {SAMPLES}/two-controllers-drive.yaml",
+            f"build {SAMPLE} -o {folder}/app.amxmi",
+            f"check {SAMPLE}",
+            f"diff {folder}/app.amxmi {folder}/app.amxmi",
+            f"report {SAMPLE} -o {folder}/report.html --duration 10ms",
+            f"simulate {SAMPLE} --duration 10ms",
+        ):
+            outcome = CliRunner().invoke(cli, words.split())
             assert outcome.exit_code == 0, outcome.output
         # The schema of XML is read only where it is violated.
         wrong = Path(folder, "wrong.amxmi")
@@ -93,6 +104,7 @@ def warm_up() -> None:
 
 def serve(listening: str) -> None:
     """Start commands as long as somebody has the other end of the standard input."""
+    gc.set_threshold(GARBAGE_THRESHOLD)
     warm_up()
     shared_analyses.share()
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)

@@ -18,7 +18,7 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 1221,
+    "_internal": 1263,
     "_version": 1,
     "am": 2,
     "analyze": 9331,
@@ -42,7 +42,7 @@ LINES = {
     "platforms": 0,
     "report": 8707,
     "services": 2716,
-    "simulate": 8634,
+    "simulate": 8627,
     "source": 3719,
     "spec": 3026,
     "timing": 5796,

@@ -26,7 +26,7 @@ def source(tmp_path):
 
 def loaded(source, argument=numba.int64):
     """The function of a source as machine code, as a new process has it, and whether that was kept by an earlier one."""
-    namespace = {}
+    namespace = {"__name__": __name__}
     exec(compile(source.read_text(), str(source), "exec"), namespace)
     found = machine_code(namespace["half"], (argument,), [source])
     return found(9), found.stats.cache_hits[(argument,)] == 1

@@ -174,14 +174,13 @@ def test_nothing_is_compiled_where_the_machine_code_is_kept():
 
 
 def test_a_part_of_the_kernel_is_compiled_once_for_all_constants():
-    from amalthea_uros.simulate.kernel.machine_code import _part
-
     numba = pytest.importorskip("numba")
+    from amalthea_uros._internal.linked_parts import linked_part
 
     def add(first, second):
         return first + second
 
-    part = _part(add)
+    part = linked_part(add)
     assert numba.njit(lambda number: part(number, 1) + part(number, 2) + part(3, number))(5) == 21
     assert part.signatures == [(numba.int64, numba.int64)]
 

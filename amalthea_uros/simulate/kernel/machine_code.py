@@ -29,7 +29,7 @@ _MODULES = tuple(
 )
 
 #: Seconds after which the speed of a run is known, and about how long numba takes to compile the kernel.
-_KNOWN, _COMPILING = 0.2, 18.0
+_KNOWN, _COMPILING = 0.2, 9.0
 
 
 @cache
@@ -51,9 +51,11 @@ def compiled() -> CompiledKernel:
     """The kernel as machine code, which numba keeps for the next time; its memory must be an array of int64."""
     from numba import int64
 
+    from amalthea_uros._internal.linked_parts import linked_part
+
     namespaces = {module: dict(vars(module)) for module in _MODULES}
     machine = {
-        function: _part(FunctionType(function.__code__, namespaces[module], function.__name__))
+        function: linked_part(FunctionType(function.__code__, namespaces[module], function.__name__))
         for module in _MODULES
         for function in _functions(module)
     }
@@ -63,19 +65,6 @@ def compiled() -> CompiledKernel:
     # numba knows the file of this function, by which it names what it keeps.
     run = FunctionType(_run.__code__, names, "run")
     return machine_code(run, (int64[::1],), effort().sources)
-
-
-def _part(function: FunctionType) -> Any:
-    """A function that only the kernel calls: compiled without code for calls from Python, and once, whatever constants it is given."""
-    from numba import njit
-    from numba.core.types import unliteral
-
-    # The types of numba do not know these options, which it uses for its own functions.
-    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    part: Any = njit(**options)(function)
-    compile_for = part.compile
-    part.compile = lambda signature: compile_for(tuple(map(unliteral, signature)))
-    return part
 
 
 def _run(memory: Memory) -> int:
