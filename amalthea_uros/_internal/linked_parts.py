@@ -9,16 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from numba import njit
+from numba import njit, version_info
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.types import unliteral
+
+#: The newest version of numba whose libraries are known here; functions of newer ones are compiled as usual.
+_NEWEST = (0, 68)
 
 
 def linked_part(function: Callable[..., Any]) -> Any:
     """A function for other compiled functions only; it is compiled once, whatever constants it is given."""
     # The types of numba do not know these options, which it uses for its own functions.
-    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "pipeline_class": _PartCompiler}
+    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    if version_info.short <= _NEWEST:
+        options["pipeline_class"] = _PartCompiler
     part: Any = njit(**options)(function)
     compile_for = part.compile
     part.compile = lambda signature: compile_for(tuple(map(unliteral, signature)))
