@@ -45,7 +45,7 @@ LINES = {
     "simulate": 8627,
     "source": 3719,
     "spec": 3026,
-    "timing": 5796,
+    "timing": 5815,
     "trace": 4785,
     "units": 210,
     "uros": 7878,

@@ -52,6 +52,19 @@ def test_eta_plus_and_delta_min_are_consistent(model, window):
     assert model.delta_min(count) < window <= model.delta_min(count + 1)
 
 
+@given(
+    st.builds(PeriodicEvents, st.integers(1, 9), st.integers(0, 60), st.integers(0, 12)),
+    st.lists(st.integers(1, 40), min_size=1, max_size=9).map(sorted),
+    st.integers(0, 3),
+    st.integers(2, 20),
+)
+def test_distances_of_completions_by_their_definition(events, completions, bcet, count):
+    latest = enumerate(completions, start=1)
+    between = min(events.delta_min(job + count - 1) - end for job, end in latest)
+    expected = max((count - 1) * bcet, between + bcet)
+    assert OutputEventModel(events, tuple(completions), bcet).delta_min(count) == expected
+
+
 @given(MODELS)
 def test_delta_min_is_monotonic(model):
     spans = [model.delta_min(count) for count in range(12)]

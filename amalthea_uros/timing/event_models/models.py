@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 from bisect import bisect_right
 from fractions import Fraction
 from functools import cached_property
+from itertools import accumulate
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.units import Time
@@ -74,6 +75,13 @@ class PeriodicEvents(EventModel):
             return 0
         count = -(-(window + self.jitter) // self.period)
         return min(count, -(-window // self.min_interarrival)) if self.min_interarrival else count
+
+    @property
+    def close_together(self) -> int:
+        """Number of events, from the first one on, that can be as close together as the minimum distance allows."""
+        if self.period <= self.min_interarrival:
+            return NEVER
+        return -(-self.jitter // (self.period - self.min_interarrival))
 
     @property
     def rate(self) -> Fraction:
@@ -402,11 +410,27 @@ class OutputEventModel(DerivedEvents):
 
     def _earliest(self, count: int) -> Time:
         """Minimum time from the latest completion of a job to the earliest activation of the one `count` - 1 after it."""
-        if isinstance(self.events, PeriodicEvents) and not self.events.jitter:
-            # All distances are equal.
-            return self.events.delta_min(count) - self._wcrt
+        if isinstance(self.events, PeriodicEvents):
+            return self._earliest_of_periodic(self.events, count - 1)
         ends = enumerate(self.completions, start=1)
         return min(self.events.delta_min(job + count - 1) - end for job, end in ends)
+
+    def _earliest_of_periodic(self, events: PeriodicEvents, later: int) -> Time:
+        """The same in one step: at first the minimum distance separates the events, then the period without the jitter."""
+        dense, periodic = self._least_slacks
+        close = min(max(events.close_together - later, 0), len(self.completions))
+        found = [dense[close - 1] + later * events.min_interarrival] if close else []
+        found += [periodic[close] + later * events.period - events.jitter] if close < len(self.completions) else []
+        return min(found)
+
+    @cached_property
+    def _least_slacks(self) -> tuple[list[Time], list[Time]]:
+        """Least times from completions to activations: at the minimum distance of the first jobs, in the period of the others."""
+        assert isinstance(self.events, PeriodicEvents)
+        distance, period = self.events.min_interarrival, self.events.period
+        dense = [job * distance - end for job, end in enumerate(self.completions)]
+        periodic = [job * period - end for job, end in enumerate(self.completions)]
+        return list(accumulate(dense, min)), list(accumulate(reversed(periodic), min))[::-1]
 
     @property
     def variation(self) -> Time:
