@@ -103,7 +103,7 @@ def verdicts(rows: list[Row]) -> list[Verdict]:
     cpu = {row.variant: row.cpu for row in rows}
     load, save = cpu["amuros load"], cpu["amuros save"]
     return [
-        _at_most("amuros load / lxml parse", _ratio(load, cpu["lxml parse"]), 6),
+        _at_most("amuros load / lxml parse", _ratio(load, cpu["lxml parse"]), 3),
         _at_least("pyecore load / amuros load", _ratio(cpu["pyecore load"], load), 20),
         _at_most("amuros save / amuros load", _ratio(save, load), 0.5),
         _at_most("amuros save, one value changed / amuros load", _ratio(cpu["amuros save, one value changed"], load), 0.5),
