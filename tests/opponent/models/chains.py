@@ -135,7 +135,9 @@ def _links(played: Played, source: str, target: str) -> Iterator[str]:
 
 
 def _accesses(played: Played, process: str) -> set[tuple[str, str]]:
-    return {(str(item[0]), str(item[1])) for item in items_of_process(played, process) if item[0] in ("read", "write")}
+    items = list(items_of_process(played, process))
+    of_modes = {("read" if item[2] == "read" else "write", str(item[1])) for item in items if item[0] == "mode"}
+    return of_modes | {(str(item[0]), str(item[1])) for item in items if item[0] in ("read", "write")}
 
 
 def readings(chain: Chain) -> Iterator[Reading]:
