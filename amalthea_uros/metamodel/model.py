@@ -114,7 +114,7 @@ class Document:
         while holder is not None:
             if holder in self.origins:
                 return self.origins[holder]
-            place = self.source.place_of(holder, attribute) if self.source is not None else None
+            place = self.source.place_of(holder, attribute if holder is element else "") if self.source is not None else None
             if place is not None and self.path is not None:
                 return Location(self.path, *place)
             holder = holder.container

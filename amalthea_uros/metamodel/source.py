@@ -114,10 +114,6 @@ class SourceText:
         starts = self.content.starts
         return [start for number, start in enumerate(starts) if number not in others] if others else starts
 
-    def start(self, place: int) -> int:
-        """Offset in `text` of the start tag of the object at a place in `elements`."""
-        return self.starts[place]
-
     @cached_property
     def by_start(self) -> dict[int, int]:
         """Offset of a start tag -> place of its object in `elements`."""
@@ -166,7 +162,7 @@ class SourceText:
         ------
         KeyError : the object was not read from this text.
         """
-        start = self.start(self.index[element])
+        start = self.starts[self.index[element]]
         return self.position(self.attribute_offset(start, attribute) if attribute else start)
 
     def place_of(self, element: Element, attribute: str = "") -> tuple[int, int, str] | None:

@@ -196,13 +196,13 @@ def unique_names(model):
 
 
 def start_tag(source, element) -> str:
-    text = source.text[source.start(source.index[element]) :]
+    text = source.text[source.starts[source.index[element]] :]
     return re.match(r"""<(?:[^>"']|"[^"]*"|'[^']*')*>""", text)[0].rstrip("/>").rstrip()
 
 
 def span(source, element) -> tuple[int, int]:
     place = source.index[element]
-    start = source.start(place)
+    start = source.starts[place]
     return start, source.content.end(start).element
 
 

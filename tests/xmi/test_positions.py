@@ -4,7 +4,7 @@ from migration import model
 from support import DATA
 
 import amalthea_uros as amuros
-from amalthea_uros.am import Label, Runnable
+from amalthea_uros.am import ActivityGraph, Label, Runnable
 
 
 def position(element, attribute=""):
@@ -60,3 +60,12 @@ def test_a_finding_about_several_references_is_at_the_first_of_the_file(tmp_path
     (finding,) = amuros.load(path).findings
     assert "2 references, this is the first" in finding.message
     assert finding.location.text == lines[1]
+
+
+def test_an_attribute_of_a_new_object_is_not_that_of_its_container():
+    model = amuros.load(DATA / "brake.amxmi")
+    document = model.documents[0]
+    act = model[Runnable, "Act"]
+    act.activity_graph = ActivityGraph()
+    new = document.location_of(act.activity_graph, "callback")
+    assert (new.line, new.column) == (18, 5)

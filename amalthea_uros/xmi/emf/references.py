@@ -287,7 +287,7 @@ class _Resolver:
         """The order of uses: the number of the file, and the offset of the object."""
         source = use.document.source
         assert source
-        return self.numbers[use.document], source.start(source.index[use.holder])
+        return self.numbers[use.document], source.starts[source.index[use.holder]]
 
     def missing_files(self, document: Document, uses: list[tuple[str, Use]]) -> Finding:
         """One finding for all references from a document to files that were not loaded."""

@@ -54,12 +54,12 @@ class SourceMerger:
         """Where an object ends."""
         end = self.ends.get(place)
         if end is None:
-            end = self.ends[place] = self.source.content.end(self.source.start(place))
+            end = self.ends[place] = self.source.content.end(self.source.starts[place])
         return end
 
     def is_same_part(self, tag: str, place: int) -> bool:
         """Whether the object was held by the same feature when it was read."""
-        start = self.source.start(place)
+        start = self.source.starts[place]
         return self.text.startswith(tag, start + 1) and self.text[start + 1 + len(tag)] in " \t\r\n/>"
 
     def ends_in_emf_layout(self, holder: Element, children: list[Child], at: int, end: int, separator: str) -> list[int] | None:
@@ -79,7 +79,7 @@ class SourceMerger:
                 at += len(child.tag)
             else:
                 place = index.get(child.element)
-                if place is None or source.start(place) != at or not self.is_same_part(child.feature.xml_name, place):
+                if place is None or source.starts[place] != at or not self.is_same_part(child.feature.xml_name, place):
                     return None
                 at = self.end_before(child, following, separator) or self.end(place).element
             ends.append(at)
@@ -97,14 +97,14 @@ class SourceMerger:
         last: Element | None = self.source.elements[place - 1]
         while last is not None and last is not child.element:
             last = last.container
-        end = self.source.start(place) - len(separator)
+        end = self.source.starts[place] - len(separator)
         return end if last is not None and self.text[end - 1] == ">" else None
 
     def is_untouched(self, place: int, end: int) -> bool:
         """Whether nothing was modified of an object in the source, and in it, up to its end."""
         number = bisect_left(self.modified_places, place)
         following = self.modified_places[number : number + 1]
-        return not following or self.source.start(following[0]) >= end
+        return not following or self.source.starts[following[0]] >= end
 
     @cached_property
     def modified_places(self) -> list[int]:
@@ -122,7 +122,7 @@ class SourceMerger:
 
     def tag(self, element: Element, plan: ClassPlan, wanted: dict[str, str], place: int) -> tuple[str, int]:
         """A start tag with the wanted attributes, without its `>` or `/>`, and the offset of these."""
-        start = self.source.start(place)
+        start = self.source.starts[place]
         name = _NAME.match(self.text, start + 1)
         assert name
         at = name.end()

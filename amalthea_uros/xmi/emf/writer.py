@@ -67,7 +67,6 @@ def usable_source(document: Document) -> SourceText | None:
 class _Writer:
     def __init__(self, document: Document, source: SourceText | None) -> None:
         self.root = document.root
-        self.modified = document.changes.modified
         self.source = source
         self.index = source.index if source else {}
         self.newline = source.newline if source else "\n"
@@ -91,7 +90,7 @@ class _Writer:
         tag = f"{self.serializer.prefixes.type_prefix}Amalthea"
         if self.source and self.merger:
             place = self.index[self.root]
-            self.out.append(self.source.text[: self.source.start(place)])
+            self.out.append(self.source.text[: self.source.starts[place]])
             opening, at = self.merger.tag(self.root, plan, {}, place)
             self.out.append(opening)
             self.merged_content(self.root, tag, children, "", place, at)
@@ -142,7 +141,7 @@ class _Writer:
             place = None
         elif place is not None and self.merger.is_untouched(place, self.merger.end(place).element):
             self.copied[len(self.out)] = [element]
-            self.out.append(self.source.text[self.source.start(place) : self.merger.end(place).element])
+            self.out.append(self.source.text[self.source.starts[place] : self.merger.end(place).element])
             return
         if self.depth == MAX_DEPTH:
             # The reader refuses deeper nesting, and `part` would exceed the recursion limit of Python.
@@ -168,7 +167,7 @@ class _Writer:
             self.canonical_content(element, tag, children, indent)
             return
         opening = f"<{tag}{_attributes_text(wanted)}"
-        start = self.source.start(place)
+        start = self.source.starts[place]
         at = start + len(opening)
         if not self.source.text.startswith(opening, start) or self.source.text[at] not in "/>":
             opening, at = self.merger.tag(element, plan, wanted, place)

@@ -45,7 +45,7 @@ def tag_of(element: Element) -> tuple[SourceText, Mapping[str, str]] | None:
     document = element.document
     source = document.source if document is not None and document.migrated_from is None else None
     place = source.index.get(element) if source is not None else None
-    return (source, attributes_at(source.text, source.start(place))) if source is not None and place is not None else None
+    return (source, attributes_at(source.text, source.starts[place])) if source is not None and place is not None else None
 
 
 def attributes_at(text: str, start: int = 0) -> dict[str, str]:
