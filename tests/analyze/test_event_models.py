@@ -16,15 +16,11 @@ from amalthea_uros.perf import stimuli as perf
 from amalthea_uros.perf.distributions import Constant, Uniform
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
+from amalthea_uros.timing.event_models.derived import AggregatedEventModel, Delayed, Downsampled, Multiplied, OutputEventModel
 from amalthea_uros.timing.event_models.models import (
-    AggregatedEventModel,
-    Delayed,
-    Downsampled,
     EventModel,
     EventPattern,
     MinimumDistances,
-    Multiplied,
-    OutputEventModel,
     PeriodicEvents,
     SingleEvent,
     SporadicEvents,

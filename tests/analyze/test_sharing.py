@@ -15,7 +15,8 @@ from amalthea_uros.analyze.response_times.busy_window import Interference
 from amalthea_uros.analyze.response_times.round_robin import response_time
 from amalthea_uros.analyze.response_times.task import AnalysedTask, Supply
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import AggregatedEventModel, PeriodicEvents
+from amalthea_uros.timing.event_models.derived import AggregatedEventModel
+from amalthea_uros.timing.event_models.models import PeriodicEvents
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority
 
 

@@ -26,13 +26,8 @@ from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, p
 from amalthea_uros.perf.stimuli import Periodic, RelativePeriodic
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.relays import latency_between, relayed
-from amalthea_uros.timing.event_models.models import (
-    AggregatedEventModel,
-    EventModel,
-    PeriodicEvents,
-    aggregated,
-    periodic_bound,
-)
+from amalthea_uros.timing.event_models.derived import AggregatedEventModel, aggregated, periodic_bound
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents
 from amalthea_uros.units import Time, time_text
 
 #: If the jitter still grows after so many analyses of both sides, the last difference is reported.

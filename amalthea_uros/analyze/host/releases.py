@@ -22,7 +22,8 @@ from amalthea_uros.perf.host import HostCallback, HostExecutor, HostExecutorKind
 from amalthea_uros.perf.network import Direction
 from amalthea_uros.timing.basics.time_base import Ticks
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SporadicEvents, aggregated
+from amalthea_uros.timing.event_models.derived import aggregated
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SporadicEvents
 from amalthea_uros.timing.response import Response
 from amalthea_uros.units import Time
 

@@ -12,7 +12,8 @@ from amalthea_uros.executors.bounds.solved_system import SolvedSystem
 from amalthea_uros.executors.bounds.transmissions import agent_hop, sent, variation
 from amalthea_uros.perf.host import Host, HostCallback, HostExecutor, HostTopic
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, plain_topic
-from amalthea_uros.timing.event_models.models import Delayed, EventModel, PeriodicEvents
+from amalthea_uros.timing.event_models.derived import Delayed
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents
 from amalthea_uros.units import Time
 
 

@@ -20,7 +20,8 @@ from amalthea_uros.timing.activation.releases import RELEASES
 from amalthea_uros.timing.basics.time_base import Ticks, to_ticks
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, rescaled
+from amalthea_uros.timing.event_models.derived import rescaled
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents
 from amalthea_uros.timing.jobs.executed import ends_with_execution
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, Rank, ScheduledProcess, Server, preemption

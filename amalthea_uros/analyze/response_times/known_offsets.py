@@ -17,7 +17,8 @@ from amalthea_uros.analyze.response_times.blocking import Blocking
 from amalthea_uros.analyze.response_times.solution import Solution
 from amalthea_uros.timing.activation.releases import known_releases
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import EventModel, rescaled
+from amalthea_uros.timing.event_models.derived import rescaled
+from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.timing.response import Claim, Response
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, is_preemptive
 from amalthea_uros.units import Time

@@ -27,7 +27,8 @@ from amalthea_uros.timing.activation.activations import Output
 from amalthea_uros.timing.basics.time_base import MAX_INPUT, max_time
 from amalthea_uros.timing.context import TimingContext
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import Delayed, EventModel, OutputEventModel, PeriodicEvents, aggregated
+from amalthea_uros.timing.event_models.derived import Delayed, OutputEventModel, aggregated
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents
 from amalthea_uros.timing.response import Response
 from amalthea_uros.timing.scheduling.scheduled import ScheduledProcess
 from amalthea_uros.units import Time

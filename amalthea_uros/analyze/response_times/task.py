@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from amalthea_uros._internal.records import dataclass
 from amalthea_uros.timing.demand.multiframe import MultiframeDemand
-from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, rescaled
+from amalthea_uros.timing.event_models.derived import rescaled
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents
 from amalthea_uros.timing.scheduling.scheduled import EqualPriority, ScheduledProcess, StatedPlace
 from amalthea_uros.units import Time
 

@@ -34,7 +34,8 @@ from amalthea_uros.executors.semantics.suspension import acknowledgements, heart
 from amalthea_uros.perf.executors import Publication
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission
 from amalthea_uros.perf.system import System
-from amalthea_uros.timing.event_models.models import Delayed, EventModel, Multiplied
+from amalthea_uros.timing.event_models.derived import Delayed, Multiplied
+from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.units import Time
 
 #: More unread messages are considered unbounded: iterations are then hardly faster than messages.

@@ -29,7 +29,8 @@ from amalthea_uros.executors.semantics.readiness import arrivals, reads_in_waits
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction, Purpose, Span, Transmission, Wire
 from amalthea_uros.timing.activation.relays import comes_regularly
-from amalthea_uros.timing.event_models.models import EventModel, Multiplied, PeriodicEvents, SporadicEvents
+from amalthea_uros.timing.event_models.derived import Multiplied
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SporadicEvents
 from amalthea_uros.units import Rounding, Time, rounded_time_text, time_text
 
 _ASSUMPTION = "executors: periodic messages keep coming, as a missing reliable message is found with the next one"

@@ -39,14 +39,8 @@ from amalthea_uros.perf.executors import Handle, HandleKind, Publication
 from amalthea_uros.perf.network import Span
 from amalthea_uros.perf.stimuli import InterProcess
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.event_models.models import (
-    Delayed,
-    EventModel,
-    Multiplied,
-    PeriodicEvents,
-    SingleEvent,
-    SporadicEvents,
-)
+from amalthea_uros.timing.event_models.derived import Delayed, Multiplied
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SingleEvent, SporadicEvents
 from amalthea_uros.units import Time
 
 

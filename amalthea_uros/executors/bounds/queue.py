@@ -35,7 +35,8 @@ from amalthea_uros.executors.semantics.readiness import arrivals, certain_rate, 
 from amalthea_uros.executors.semantics.suspension import acknowledgements
 from amalthea_uros.perf.executors import Handle
 from amalthea_uros.perf.network import Direction
-from amalthea_uros.timing.event_models.models import Delayed, EventModel, Multiplied, aggregated
+from amalthea_uros.timing.event_models.derived import Delayed, Multiplied, aggregated
+from amalthea_uros.timing.event_models.models import EventModel
 from amalthea_uros.units import SECOND, Time
 
 #: A busy period with more messages is considered unbounded: iterations are then hardly faster than messages.

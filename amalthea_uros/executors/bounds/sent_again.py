@@ -26,7 +26,8 @@ from amalthea_uros.executors.semantics.suspension import NONE, Suspension, heart
 from amalthea_uros.perf.network import Direction, Losses, Purpose, Transmission, Wire
 from amalthea_uros.perf.system import System
 from amalthea_uros.timing.basics.time_base import max_time
-from amalthea_uros.timing.event_models.models import EventModel, Multiplied, SporadicEvents, aggregated
+from amalthea_uros.timing.event_models.derived import Multiplied, aggregated
+from amalthea_uros.timing.event_models.models import EventModel, SporadicEvents
 from amalthea_uros.units import Time
 
 #: After which the time to read everything is considered unbounded.

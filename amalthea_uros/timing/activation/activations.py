@@ -23,16 +23,8 @@ from amalthea_uros.perf.system import System
 from amalthea_uros.timing.activation.relays import comes_regularly
 from amalthea_uros.timing.dataflow.links import Dataflow
 from amalthea_uros.timing.demand.job_paths import most_in_a_job
-from amalthea_uros.timing.event_models.models import (
-    Delayed,
-    Downsampled,
-    EventModel,
-    Multiplied,
-    PeriodicEvents,
-    SporadicEvents,
-    aggregated,
-    thinned,
-)
+from amalthea_uros.timing.event_models.derived import Delayed, Downsampled, Multiplied, aggregated, thinned
+from amalthea_uros.timing.event_models.models import EventModel, PeriodicEvents, SporadicEvents
 from amalthea_uros.timing.event_models.stimuli import event_model_of
 from amalthea_uros.timing.jobs.counters import CounterFlaws, is_always
 from amalthea_uros.timing.jobs.positions import ActivityPosition, is_in_fixed_order

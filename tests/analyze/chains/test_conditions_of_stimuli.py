@@ -20,7 +20,8 @@ from amalthea_uros.perf.constraints import (
     TimeMetric,
 )
 from amalthea_uros.perf.stimuli import InterProcess, Periodic, Stimuli, Synthetic
-from amalthea_uros.timing.event_models.models import PeriodicEvents, can_be_dense, is_strictly_periodic, rescaled, thinned
+from amalthea_uros.timing.event_models.derived import rescaled, thinned
+from amalthea_uros.timing.event_models.models import PeriodicEvents, can_be_dense, is_strictly_periodic
 from amalthea_uros.units import MICROSECOND as US
 
 NOT_YET = Condition(alternatives=((ModeValueIs(label="M", relation=Relation.NOT_EQUAL, value="1"),),))
