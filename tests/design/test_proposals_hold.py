@@ -102,3 +102,13 @@ def test_the_work_of_the_analyses_ends_a_search_with_what_was_found(designs, mon
     assert found.tried == designs
     assert found.conclusion is Conclusion.BEST_FOUND
     assert found.ended == f"judging {counted(designs, 'design')} took as much work as 500 designs may take"
+
+
+def test_a_search_that_has_judged_everything_is_complete_whatever_the_work(monkeypatch):
+    tasks = [{"name": name, "C": 1, "T": 8, "D": 8} for name in "AB"]
+    plan = plan_optimization(system_of(tasks), goals=["load"])
+    whole = search(plan.problem, Effort(is_complete=True))
+    assert (whole.conclusion, whole.ended) == (Conclusion.OPTIMAL, "")
+    monkeypatch.setattr(judged, "WORK_PER_DESIGN", plan.before.work)
+    found = search(plan.problem, Effort(designs=whole.tried, is_complete=True))
+    assert (found.conclusion, found.ended, found.tried) == (Conclusion.OPTIMAL, "", whole.tried)

@@ -112,20 +112,21 @@ class Recorder:
         """
         new = [candidate for candidate in dict.fromkeys(candidates) if candidate not in self.found]
         rest = self.effort.designs - len(self.found)
-        self._check_ended()
-        for evaluation in self.evaluate(new[:rest]):
+        self._check_ended(len(new))
+        for number, evaluation in enumerate(self.evaluate(new[:rest]), start=1):
             self.found[evaluation.candidate] = evaluation
             self.work += evaluation.work
             self.effort.progress(len(self.found))
-            self._check_ended()
+            self._check_ended(len(new) - number)
         if len(new) > rest:
             raise EndedError(f"the limit of {self.effort.designs:,} designs was reached")
         return [self.found[candidate] for candidate in candidates]
 
-    def _check_ended(self) -> None:
+    def _check_ended(self, left: int) -> None:
+        """Whether the search has to end before it judges the designs that are left."""
         if reason := self.effort.ended():
             raise EndedError(reason)
-        if self.work >= self.effort.designs * WORK_PER_DESIGN:
+        if left and self.work >= self.effort.designs * WORK_PER_DESIGN:
             judged, allowed = counted(len(self.found), "design"), counted(self.effort.designs, "design")
             raise EndedError(f"judging {judged} took as much work as {allowed} may take")
 
