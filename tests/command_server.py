@@ -13,6 +13,7 @@ import subprocess
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from select import select
@@ -107,38 +108,53 @@ def serve(listening: str) -> None:
     gc.set_threshold(GARBAGE_THRESHOLD)
     warm_up()
     shared_analyses.share()
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    ended, ends = os.pipe()
+    os.set_blocking(ends, False)
+    signal.signal(signal.SIGCHLD, lambda *_: None)
+    signal.set_wakeup_fd(ends)
+    clients: dict[int, socket.socket] = {}
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as server:
         server.bind(listening)
         server.listen()
         sys.stdout.write("ready\n")
         sys.stdout.flush()
-        while sys.stdin not in select([server, sys.stdin], [], [])[0]:
-            connection, _ = server.accept()
-            request, streams, _, _ = socket.recv_fds(connection, _REQUEST, 3)
-            if os.fork() == 0:
-                server.close()
-                _tell(connection, request, streams)
-            connection.close()
-            for stream in streams:
-                os.close(stream)
+        while sys.stdin not in (ready := select([server, ended, sys.stdin], [], [])[0]):
+            if ended in ready:
+                os.read(ended, 4096)
+                _tell_ends(clients)
+            if server in ready:
+                _start(server, clients)
 
 
-def _tell(connection: socket.socket, request: bytes, streams: Sequence[int]) -> NoReturn:
-    """Let a copy of this process run a command, and tell the client how that ended."""
-    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+def _start(server: socket.socket, clients: dict[int, socket.socket]) -> None:
+    """Let a copy of this process run a command, for a client that is noted by the number of the copy."""
+    connection, _ = server.accept()
+    request, streams, _, _ = socket.recv_fds(connection, _REQUEST, 3)
     child = os.fork()
     if child == 0:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        server.close()
+        for other in (connection, *clients.values()):
+            other.close()
         words, folder, environment = marshal.loads(request)
-        connection.close()
         os.environ.clear()
         os.environ.update(environment)
         _become(words, folder, streams)
+    clients[child] = connection
     for stream in streams:
         os.close(stream)
-    _, status = os.waitpid(child, 0)
-    connection.send(str(os.waitstatus_to_exitcode(status)).encode())
-    os._exit(0)
+
+
+def _tell_ends(clients: dict[int, socket.socket]) -> None:
+    """Tell the clients of the copies that have ended how they did."""
+    while clients:
+        child, status = os.waitpid(-1, os.WNOHANG)
+        if child == 0:
+            return
+        # A client that is no longer there needs no answer.
+        with clients.pop(child) as connection, suppress(OSError):
+            connection.send(str(os.waitstatus_to_exitcode(status)).encode())
 
 
 def _become(words: Sequence[str], folder: str, streams: Sequence[int]) -> NoReturn:
