@@ -18,7 +18,7 @@ from support import ROOT
 LINES = {
     "__init__": 258,
     "__main__": 3,
-    "_internal": 1266,
+    "_internal": 1267,
     "_version": 1,
     "am": 2,
     "analyze": 9332,

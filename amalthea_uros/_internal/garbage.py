@@ -8,6 +8,8 @@ from contextlib import contextmanager
 
 #: As long as fewer objects have been made since the last collection, nothing is collected here.
 FEW_OBJECTS = 300_000
+#: More than Python itself keeps from collections when it starts: 375 objects in 3.12, none in 3.11 and 3.13.
+FROZEN_BY_PYTHON = 1_000
 
 
 @contextmanager
@@ -17,7 +19,7 @@ def paused_garbage_collection() -> Iterator[None]:
     gc.disable()
     try:
         yield
-        if was_enabled and not gc.get_freeze_count():
+        if was_enabled and gc.get_freeze_count() < FROZEN_BY_PYTHON:
             _keep()
     finally:
         if was_enabled:

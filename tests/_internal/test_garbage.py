@@ -46,3 +46,14 @@ def test_garbage_is_collected_once_there_is_a_quarter_more_than_is_in_use():
     with paused_garbage_collection():
         many += [[] for _ in range(before // 4)]
     assert garbage._Collected.left == left
+
+
+@pytest.mark.usefixtures("few_objects")
+@pytest.mark.parametrize(("frozen", "is_collected"), [(375, True), (100_000, False)], ids=["by Python 3.12", "by the process"])
+def test_objects_that_a_process_has_frozen_stay_so(monkeypatch, frozen, is_collected):
+    monkeypatch.setattr(garbage.gc, "get_freeze_count", lambda: frozen)
+    before = garbage._Collected.left
+    with paused_garbage_collection():
+        many = [[] for _ in range(before)]
+    assert many
+    assert (garbage._Collected.left != before) == is_collected
