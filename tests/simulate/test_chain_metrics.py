@@ -318,8 +318,8 @@ def test_what_is_no_longer_kept_is_counted_in_any_chunks(observed, cuts, window)
 # Reactions of chains with parallel parts: one of them is enough, or all are needed.
 
 
-@pytest.mark.parametrize(("completed", "verdict"), [(1, ObservedVerdict.NOT_OBSERVED), (2, ObservedVerdict.MISSED)])
-def test_ways_of_which_only_some_decide(completed, verdict):
+def verdicts(completed, **limits):
+    """What a simulation and the analysis say about limits of two ways, of which a number has to be completed."""
     # A starts at 0, and R ends at 4 with what A wrote; B reads it at 10, so that R gets that way only at 20, in the next job.
     names = ("A", "B", "R")
     events = tuple(
@@ -347,9 +347,19 @@ def test_ways_of_which_only_some_decide(completed, verdict):
         events=events,
         chains=(chain,),
     )
-    limit = LatencyConstraint(name="limit", chain="ways", maximum=10 * US)
+    limit = LatencyConstraint(name="limit", chain="ways", **limits)
     built = replace(built, constraints=Constraints(constraints=(limit,)))
     (found,) = simulate_system(built, Options(duration=Duration(200 * US))).requirements
-    assert found.verdict is verdict
     (proved,) = analyze_system(built).requirements
-    assert str(proved.verdict) == ("met" if completed == 1 else "unknown")
+    return found.verdict, str(proved.verdict)
+
+
+def test_a_limit_of_the_way_that_is_completed_last():
+    assert verdicts(1, maximum=10 * US) == (ObservedVerdict.NOT_OBSERVED, "met")
+    assert verdicts(2, maximum=10 * US) == (ObservedVerdict.MISSED, "unknown")
+
+
+def test_a_limit_of_the_way_that_is_completed_first():
+    assert verdicts(1, minimum=15 * US) == (ObservedVerdict.MISSED, "missed")
+    # R is completed after 4 us by the one way, but by both of them after 24 us.
+    assert verdicts(2, minimum=15 * US) == (ObservedVerdict.NOT_OBSERVED, "unknown")

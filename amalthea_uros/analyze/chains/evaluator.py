@@ -19,7 +19,7 @@ from amalthea_uros.errors import UnknownError
 from amalthea_uros.perf.events import EventChain
 from amalthea_uros.timing.activation.releases import ExternalInput, unknown_phases
 from amalthea_uros.timing.context import TimingContext
-from amalthea_uros.timing.dataflow.chains import Unfolded, combined, empty_sets, sequences, unfold
+from amalthea_uros.timing.dataflow.chains import Unfolded, combined, empty_sets, is_decided_by_one_path, sequences, unfold
 from amalthea_uros.timing.dataflow.events import UnraisedError
 from amalthea_uros.timing.dataflow.links import LinkKind
 from amalthea_uros.timing.dataflow.routes import Route, UnlinkedError, route_text, routes_of_paths
@@ -299,19 +299,25 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[LatencyVa
         else:
             finite = [time for time in times.values() if time is not None]
             time = (max if value.quantity.is_upper else min)(finite)
+        is_exact = _can_be_exact(value.quantity, unfolded) and all(path and path.claim is Claim.EXACT for path in each.values())
         found.append(
             LatencyValue(
                 quantity=value.quantity,
                 value=time,
-                # The maximum of minima is not the minimum of maxima: for alternatives it is a bound.
-                claim=Claim.BOUND
-                if value.quantity.is_reaction or any(path.claim is not Claim.EXACT for path in each.values() if path)
-                else Claim.EXACT,
+                claim=Claim.EXACT if is_exact else Claim.BOUND,
                 method=value.method,
                 source=value.source,
             )
         )
     return found
+
+
+def _can_be_exact(quantity: LatencyQuantity, unfolded: Unfolded) -> bool:
+    """Whether exact values of the paths make that of their chain exact: joins can be completed later than by any fastest path."""
+    if quantity is LatencyQuantity.MIN_FIRST_TO_FIRST:
+        return is_decided_by_one_path(unfolded, is_upper=False)
+    # The maximum of minima is not the minimum of maxima: for alternatives it is a bound.
+    return not quantity.is_reaction
 
 
 def _tightest(values: Sequence[LatencyValue]) -> tuple[LatencyValue, ...]:

@@ -43,7 +43,7 @@ from amalthea_uros.simulate.observations import (
 from amalthea_uros.simulate.runs.not_simulated import LIMITED_PROCESS_LEFT_OUT
 from amalthea_uros.timing.activation.releases import activation_period
 from amalthea_uros.timing.basics.quantities import ChainQuantity, JobMetric, is_deviation_from_period
-from amalthea_uros.timing.dataflow.chains import forks, unfold
+from amalthea_uros.timing.dataflow.chains import is_decided_by_one_path, unfold
 from amalthea_uros.units import Time
 
 _SHARES = {
@@ -264,9 +264,8 @@ def _of_chain(
 def _decide_some(chain: EventChain, limit: SystemLimit, system: System) -> bool:
     """Whether the longest path through a chain, or the shortest one for a lower limit, does not decide on a reaction."""
     try:
-        found = list(forks(unfold(chain, system)[0]))
+        unfolded, _ = unfold(chain, system)
     except UnknownError:
         return False
-    is_earlier = any(fork.needed < len(fork.branches) for fork in found)
-    is_later = any(fork.needed > 1 for fork in found)
-    return is_earlier or is_later if limit.is_jitter else is_earlier if limit.is_upper else is_later
+    ends = (True, False) if limit.is_jitter else (limit.is_upper,)
+    return not all(is_decided_by_one_path(unfolded, is_upper=is_upper) for is_upper in ends)

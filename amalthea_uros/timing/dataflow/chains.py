@@ -213,6 +213,14 @@ def combined(unfolded: Unfolded, value: Mapping[tuple[str, ...], int | None], be
     return value[before]
 
 
+def is_decided_by_one_path(unfolded: Unfolded, *, is_upper: bool) -> bool:
+    """Whether the path with the greatest value, or for a minimum that with the least one, decides on a reaction.
+
+    The maximum of minima is not the minimum of maxima: elsewhere what follows from the extremes of the paths is only a bound.
+    """
+    return all(fork.needed == (len(fork.branches) if is_upper else 1) for fork in forks(unfolded))
+
+
 def forks(unfolded: Unfolded) -> Iterator[Fork]:
     """All forks of a chain."""
     for part in unfolded:
