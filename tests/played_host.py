@@ -113,7 +113,9 @@ def play(threads, sources, horizon, random):
                 own[callback.name] = max(own[callback.name], now + 1 - release)
                 whole[callback.name] = max(whole[callback.name], now + 1 - root)
                 for topic, latency in callback.sends.items():
-                    coming[now + 1 + latency].append((topic, root))
+                    # What arrives at the end itself is there before what has been on its way.
+                    place = 0 if latency == 0 else len(coming[now + 1 + latency])
+                    coming[now + 1 + latency].insert(place, (topic, root))
                 thread.running = None
             break
     return own, whole

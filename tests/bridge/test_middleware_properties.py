@@ -71,6 +71,7 @@ SYSTEM = System(
 
 
 st.register_type_strategy(Location, st.none())  # where something comes from has no part in what it is
+st.register_type_strategy(int, st.integers(-(2**63) + 1, 2**63 - 1))  # others are refused when they are read
 EXECUTORS, NETWORKS = st.from_type(Executor), st.from_type(Network)
 
 

@@ -32,7 +32,7 @@ from amalthea_uros.trace.table import EventKind
 from amalthea_uros.units import MILLISECOND, SECOND, Duration
 from amalthea_uros.uros.described import describe_content, describe_text
 
-BLOCK = 20
+BLOCK = 200 if IS_THOROUGH else 20
 SEEDS = range(4000 if IS_THOROUGH else 60)
 DIRECTIONS = ("to_controller", "to_agent")
 

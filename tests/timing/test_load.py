@@ -43,6 +43,8 @@ SAMPLES = [pytest.param(path, id=path.name) for path in sorted((ROOT / "samples"
 def test_the_load_is_that_of_the_analysis(path):
     if path.stem == "40_sched_computation":
         pytest.skip("scheduler decisions take time")
+    if path.stem == "mobstr-mapped+safety":
+        pytest.skip("the rules do not count a process that waits for events, the analysis knows what it executes")
     try:
         model = load(path)
     except ReadError:
