@@ -31,6 +31,7 @@ class Chain:
     ----------
     branches : chains between the same events that are parallel, instead of processes
     completed : how many of them have to lead to a response
+    is_whole : whether no data lead from one of its processes to the next one but those of the links
     """
 
     name: str
@@ -40,6 +41,7 @@ class Chain:
     links: tuple[tuple[str, ...], ...]
     branches: tuple[Chain, ...] = ()
     completed: int = 1
+    is_whole: bool = True
 
 
 #: One link for each step, of each branch.
@@ -71,7 +73,8 @@ def chains_of(text: str | bytes, played: Played) -> Iterator[Chain]:
             branches = tuple(branch for branch in found if branch is not None)
             if len(branches) == len(found) > 1:
                 completed = int(chain.get("minItemsCompleted", "1"))
-                yield Chain(name, branches[0].stimulus, branches[0].response, (), (), branches, completed)
+                is_whole = all(branch.is_whole for branch in branches)
+                yield Chain(name, branches[0].stimulus, branches[0].response, (), (), branches, completed, is_whole)
         elif single := _chain_of(_events_of_chain(chain, chains), name, events, played):
             yield single
 
@@ -84,7 +87,8 @@ def _chain_of(names: list[str], name: str, events: dict[str, Event], played: Pla
     processes = [steps[0][0]]
     processes += [b[0] for a, b in pairwise(steps) if a[0] != b[0]]
     links = tuple(tuple(_links_of_step(played, a, b)) for a, b in pairwise(steps) if a[0] != b[0])
-    return Chain(name, steps[0][1], steps[-1][1], tuple(processes), links) if links and all(links) else None
+    is_whole = all(_shared(played, a, b) <= set(found) for (a, b), found in zip(pairwise(processes), links, strict=True))
+    return Chain(name, steps[0][1], steps[-1][1], tuple(processes), links, is_whole=is_whole) if links and all(links) else None
 
 
 def _is_against_order(first: Event, then: Event) -> bool:
@@ -120,9 +124,7 @@ def _links_of_step(played: Played, first: Event, then: Event) -> Iterator[str]:
 def _links(played: Played, source: str, target: str) -> Iterator[str]:
     """What leads from a process to another one; nothing if it is not clear."""
     accesses = {process.name: _accesses(played, process.name) for process in played.processes}
-    for name in sorted(
-        {n for kind, n in accesses[source] if kind == "write"} & {n for kind, n in accesses[target] if kind == "read"}
-    ):
+    for name in sorted(_named("write", accesses[source]) & _named("read", accesses[target])):
         writers = [process for process, found in accesses.items() if ("write", name) in found]
         if writers == [source]:
             yield name
@@ -132,6 +134,24 @@ def _links(played: Played, source: str, target: str) -> Iterator[str]:
     of_target = next(process.stimuli for process in played.processes if process.name == target)
     if stimuli & set(of_target):
         yield ""
+
+
+def _shared(played: Played, source: str, target: str) -> set[str]:
+    """The data that one process writes and another one reads, or compares with something, whoever writes them, too."""
+    items = items_of_process(played, target)
+    compared = {
+        each.name
+        for item in items
+        if item[0] == "switch"
+        for condition, _ in item[1]
+        for all_of in condition
+        for each in all_of
+    }
+    return _named("write", _accesses(played, source)) & (_named("read", _accesses(played, target)) | compared)
+
+
+def _named(kind: str, accesses: set[tuple[str, str]]) -> set[str]:
+    return {name for each, name in accesses if each == kind}
 
 
 def _accesses(played: Played, process: str) -> set[tuple[str, str]]:

@@ -124,7 +124,7 @@ def facts_of(
         if extremes:
             loose[key] = (min(complete, default=None), max(each.greatest[key] for each in extremes))
     is_fixed = len(chosen) == len(variants) and not lost and not is_random(played) and not has_counters(played)
-    several = {("chain", chain.name) for chain in chains if len(list(readings(chain))) > 1}
+    several = {("chain", chain.name) for chain in chains if len(list(readings(chain))) > 1 or not chain.is_whole}
     fixed = {key for key, ends in spread.items() if is_fixed and ends == (least[key], greatest[key]) and key[:2] not in several}
     return Facts(
         determined=frozenset(fixed),
