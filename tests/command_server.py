@@ -108,19 +108,20 @@ def serve(listening: str) -> None:
     gc.set_threshold(GARBAGE_THRESHOLD)
     warm_up()
     shared_analyses.share()
-    ended, ends = os.pipe()
-    os.set_blocking(ends, False)
+    woken, wake = os.pipe()
+    os.set_blocking(wake, False)
+    # The end of a copy is a byte in a pipe, for which one can wait beside everything else.
     signal.signal(signal.SIGCHLD, lambda *_: None)
-    signal.set_wakeup_fd(ends)
+    signal.set_wakeup_fd(wake)
     clients: dict[int, socket.socket] = {}
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as server:
         server.bind(listening)
         server.listen()
         sys.stdout.write("ready\n")
         sys.stdout.flush()
-        while sys.stdin not in (ready := select([server, ended, sys.stdin], [], [])[0]):
-            if ended in ready:
-                os.read(ended, 4096)
+        while sys.stdin not in (ready := select([server, woken, sys.stdin], [], [])[0]):
+            if woken in ready:
+                os.read(woken, 4096)
                 _tell_ends(clients)
             if server in ready:
                 _start(server, clients)

@@ -313,7 +313,7 @@ def _combine(unfolded: Unfolded, values: Mapping[tuple[str, ...], list[LatencyVa
 
 
 def _can_be_exact(quantity: LatencyQuantity, unfolded: Unfolded) -> bool:
-    """Whether exact values of the paths make that of their chain exact: joins can be completed later than by any fastest path."""
+    """Whether exact values of the paths make that of their chain exact: a join can always take longer than its fastest path."""
     if quantity is LatencyQuantity.MIN_FIRST_TO_FIRST:
         return is_decided_by_one_path(unfolded, is_upper=False)
     # The maximum of minima is not the minimum of maxima: for alternatives it is a bound.
